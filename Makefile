@@ -1,0 +1,44 @@
+# make paper · make test · make smoke · make lint · make lock · make clean
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+CORES ?= 2
+
+.PHONY: env paper smoke test lint format lock clean
+
+paper: env
+	$(BIN)/snakemake --cores $(CORES)
+
+smoke: env
+	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml
+
+test: env
+	$(BIN)/python -m pytest
+
+lint: env
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/snakemake --lint
+
+format: env
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+	$(BIN)/snakefmt Snakefile workflow
+
+env: $(VENV)/installed
+
+$(VENV)/installed: environment-lock.txt pyproject.toml
+	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'nonsmooth needs Python >= 3.11; set PYTHON=python3.11 or newer')"
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r environment-lock.txt
+	$(BIN)/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	touch $@
+
+# needs uv; pins every dependency of pyproject.toml for all platforms and Python versions
+lock:
+	uv pip compile pyproject.toml --all-extras --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file environment-lock.txt
+
+clean:
+	rm -rf results paper/paper.pdf .snakemake
+	find src workflow tests -name __pycache__ -prune -exec rm -rf {} +

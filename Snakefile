@@ -1,0 +1,45 @@
+# The pipeline: config -> scenes -> solve / simulate -> artifacts -> figures, tables -> paper.
+# This file validates the configuration, includes the rules and names the targets.
+import sys
+
+sys.path.insert(0, f"{workflow.basedir}/src")
+
+from nonsmooth.errors import NonsmoothError
+from workflow.dependencies import sources
+from workflow.experiment import check, finite, label, shards
+
+
+configfile: "config.yaml"
+
+
+try:
+    check(config)
+except NonsmoothError as error:
+    sys.exit(f"error: {error}")
+
+RESULTS = config["outputs"]["results"]
+PAPER = config["outputs"]["paper"]
+
+
+container: None
+
+
+wildcard_constraints:
+    model="elasto_plastic|friction|obstacle",
+    n="[0-9.e+]+|inf",
+    p="[0-9.e+-]+",
+    shard="[0-9]+",
+
+
+rule all:
+    input:
+        PAPER,
+
+
+include: "workflow/rules/scenes.smk"
+include: "workflow/rules/rheology.smk"
+include: "workflow/rules/trajectories.smk"
+include: "workflow/rules/variance.smk"
+include: "workflow/rules/crossing.smk"
+include: "workflow/rules/convergence.smk"
+include: "workflow/rules/paper.smk"

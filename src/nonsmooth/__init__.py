@@ -1,0 +1,21 @@
+"""Random vibration of non-smooth mechanical systems.
+
+The functions below are the public interface; they are imported when first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "brownian": ["brownian_crossing"],
+        "crossing": ["crossing_probability"],
+        "errors": ["NonsmoothError"],
+        "estimate": ["Estimate"],
+        "noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],
+        "scene": ["Scene"],
+        "trajectories": ["simulate"],
+        "variance": ["asymptotic_variance", "variance"],
+    },
+)
+

@@ -1,0 +1,58 @@
+"""gamma^2 of dry friction with white noise and g(y) = y, in closed form up to one quadrature."""
+
+import math
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.special import erfcx
+
+
+def friction_variance(n, damping=1.0):
+    """Asymptotic variance gamma_n^2 of int_0^t Y_s ds, with its error (Theorem thm3).
+
+    With m(y) = exp(-C_b y^2 - 2 a_n(y)) the Poisson equation reads (m u')' = -2 y m, so that
+    u' = 2/m int_y^inf s m(s) ds is elementary up to one scaled complementary error function,
+    and gamma^2 = int u'^2 m / int m.
+
+    Parameters
+    ----------
+    n : float
+        Penalization, > 0 or inf, "1".
+    damping : float
+        C_b > 0, "1".
+
+    Returns
+    -------
+    value, error : float
+        The error is the quadrature's own estimate plus rounding.
+    """
+    knot = 0.0 if math.isinf(n) else 1 / n
+    root = math.sqrt(damping)
+
+    def slope_outside(y):
+        # a_n(y) = |y| - knot/2, and int_y^inf exp(-C s^2 - 2 s) ds is an erfc
+        return (1 - math.sqrt(math.pi) / root * erfcx(root * y + 1 / root)) / damping
+
+    def density_outside(y):
+        return math.exp(-damping * y**2 - 2 * y + knot)
+
+    at_knot = slope_outside(knot) * density_outside(knot)
+
+    def density_inside(y):
+        return math.exp(-(damping + n) * y**2)
+
+    def slope_inside(y):
+        inner = (density_inside(y) - density_inside(knot)) / (damping + n)
+        return (inner + at_knot) / density_inside(y)
+
+    end = knot + min(8.5 / root, 40.0)  # the density there is below 1e-31 of its maximum
+    moments = np.zeros((2, 2))
+    pieces = [(knot, end, slope_outside, density_outside)]
+    if knot > 0:
+        pieces.append((0.0, min(knot, 8.5 / math.sqrt(damping + n)), slope_inside, density_inside))
+    for left, right, slope, density in pieces:
+        for row, integrand in enumerate((lambda y, s=slope, d=density: s(y) ** 2 * d(y), density)):
+            moments[row] += quad(integrand, left, right, epsabs=0, epsrel=1e-13, limit=200)
+    (square, square_error), (mass, mass_error) = moments
+    value = square / mass
+    return value, value * (square_error / square + mass_error / mass + 8 * np.finfo(float).eps)

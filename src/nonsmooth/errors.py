@@ -1,0 +1,29 @@
+"""The errors a user can cause: each message is one line naming the offender and the cure."""
+
+
+class NonsmoothError(Exception):
+    """Base of every error whose message is meant for the user and needs no traceback."""
+
+
+class ExpressionError(NonsmoothError):
+    """A potential, Hamiltonian or observable that cannot be read."""
+
+
+class SceneError(NonsmoothError):
+    """A scene that is impossible, or outside the theory or the method asked for."""
+
+
+class ToleranceError(NonsmoothError):
+    """A tolerance that the method could not meet."""
+
+
+class ConfigError(NonsmoothError):
+    """A configuration that does not fit its schema."""
+
+
+class ArtifactError(NonsmoothError):
+    """A result file that is missing, truncated or not ours."""
+
+
+class CheckError(NonsmoothError):
+    """Results that contradict each other."""

@@ -1,0 +1,110 @@
+"""Formulas given as text: read without `eval`, kept symbolic, compiled when a kernel needs them."""
+
+import inspect
+from functools import lru_cache
+
+import sympy
+from asteval import Interpreter
+
+from nonsmooth.errors import ExpressionError
+
+FUNCTIONS = {
+    "abs": sympy.Abs,
+    "atan": sympy.atan,
+    "cos": sympy.cos,
+    "cosh": sympy.cosh,
+    "exp": sympy.exp,
+    "log": sympy.log,
+    "max": sympy.Max,
+    "min": sympy.Min,
+    "sign": sympy.sign,
+    "sin": sympy.sin,
+    "sinh": sympy.sinh,
+    "sqrt": sympy.sqrt,
+    "tanh": sympy.tanh,
+}
+_ARITHMETIC_ONLY = {
+    node: False
+    for node in (
+        "assign attribute augassign boolop compare delete dict dictcomp for formattedvalue "
+        "functiondef if ifexp import importfrom joinedstr lambda list listcomp print raise set "
+        "setcomp slice subscript try tuple while with"
+    ).split()
+}
+
+
+def parse(text, variables):
+    """Read a formula.
+
+    Parameters
+    ----------
+    text : str
+        Python arithmetic with the functions of `FUNCTIONS` and the constant ``pi``,
+        for example ``"x**2/2 + 0.3*cos(x)"``.
+    variables : iterable of sympy.Symbol
+        The variables the formula may contain.
+
+    Returns
+    -------
+    sympy.Expr
+
+    Raises
+    ------
+    ExpressionError
+        If the text is not arithmetic, or uses a name outside the white list.
+    """
+    names = {symbol.name: symbol for symbol in variables}
+    interpreter = Interpreter(
+        symtable={"pi": sympy.pi} | FUNCTIONS | names, use_numpy=False, config=_ARITHMETIC_ONLY
+    )
+    del interpreter.symtable["print"]
+    try:
+        expression = sympy.sympify(interpreter.eval(text, raise_errors=True, show_errors=False))
+    except Exception as error:  # asteval re-raises whatever the formula provoked
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise ExpressionError(
+            f"cannot read the formula {text!r} ({reason}); use the variables "
+            f"{', '.join(sorted(names))} and the functions {', '.join(FUNCTIONS)}"
+        ) from None
+    if not isinstance(expression, sympy.Expr) or expression.is_extended_real is False:
+        raise ExpressionError(f"the formula {text!r} is not a real expression; write arithmetic")
+    return expression
+
+
+@lru_cache(maxsize=256)
+def compiled(expression, variables):
+    """Compile an expression to a C function that kernels call through a pointer.
+
+    A pointer, rather than a jitted function, keeps the kernels' type independent of the
+    formula: they are compiled once and cached on disk for every potential there will ever be.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+    variables : tuple of sympy.Symbol
+        The arguments, in order.
+
+    Returns
+    -------
+    numba cfunc
+        float64(float64, ...) with one argument per variable.
+    """
+    import numba
+
+    function = sympy.lambdify(variables, expression, modules="math", cse=True)
+    arguments = ", ".join(["float64"] * len(inspect.signature(function).parameters))
+    return numba.cfunc(f"float64({arguments})")(function)
+
+
+@lru_cache(maxsize=256)
+def vectorised(expression, variables):
+    """Compile an expression to a numpy function of arrays, one argument per variable."""
+    import numpy as np
+
+    function = sympy.lambdify(variables, expression, modules="numpy", cse=True)
+
+    def evaluate(*values):
+        shape = np.broadcast_shapes(*(np.shape(value) for value in values))
+        return np.broadcast_to(np.asarray(function(*values), dtype=float), shape)
+
+    return evaluate

@@ -1,0 +1,97 @@
+"""The paper's finite-difference scheme (its appendix C), with the indices mended.
+
+Backward Euler in time, centred differences in space on [-L, L], one-sided Neumann rows. The
+right-hand sides use W^{k-1} and V^{k-1}, not step k as printed, and the source of V is
+(D W^k)^2. First order in time; second order in space on a grid fitted to the kinks at +-1/n.
+"""
+
+import numpy as np
+from scipy.linalg.lapack import dgttrf, dgttrs
+
+from nonsmooth import models
+from nonsmooth.errors import SceneError
+from nonsmooth.expressions import vectorised
+
+
+def moments(scene, times, half_width, nodes, time_step):
+    """Solve eqs. (PDEw) and (PDEv) and return w(0, tau) and v(0, tau).
+
+    Parameters
+    ----------
+    scene : Scene
+        With state y and a finite n.
+    times : array_like, shape (t,)
+        Output times, multiples of `time_step`.
+    half_width : float
+        L, "1".
+    nodes : int
+        N, odd, so that 0 is a node.
+    time_step : float
+        Delta t, "1".
+
+    Returns
+    -------
+    w, v : numpy.ndarray, shape (t,)
+
+    Raises
+    ------
+    SceneError
+        If the scene has another state, or the grid does not fit.
+    """
+    if scene.state != ("y",) or scene.start.get("y", 0.0) != 0.0:
+        raise SceneError("the paper's scheme is one-dimensional; it takes the state (y) from y = 0")
+    if nodes % 2 == 0:
+        raise SceneError(f"the paper's scheme needs an odd number of nodes, got {nodes}; add one")
+    outputs = np.rint(np.asarray(times) / time_step).astype(int)
+    if not np.allclose(outputs * time_step, times, rtol=1e-9):
+        raise SceneError("the output times are not multiples of the time step; change either")
+    y = np.linspace(-half_width, half_width, nodes)
+    width = y[1] - y[0]
+    speed = -vectorised(scene.numerical_drift()[models.y], (models.y,))(y)
+    g = time_step * vectorised(scene.observable_expression, (models.y,))(y)
+    diffusion = scene.noise.sigma**2 / width**2
+    lower = -time_step / 2 * (diffusion + speed / width)
+    upper = -time_step / 2 * (diffusion - speed / width)
+    main = np.full(nodes, 1 + time_step * diffusion)
+    main[[0, -1]] = 1 / width, -1 / width
+    lower[-1], upper[0] = 1 / width, -1 / width
+    *factors, info = dgttrf(lower[1:], main, upper[:-1])
+    if info:
+        raise SceneError("the paper's scheme is singular on this grid; refine it")
+
+    def solve(right):
+        right[[0, -1]] = 0.0  # Neumann rows
+        return dgttrs(*factors, right)[0]
+
+    w, v, slope = np.zeros((3, nodes))
+    history = {0: (0.0, 0.0)}
+    for k in range(1, outputs[-1] + 1):
+        w = solve(g + w)
+        slope[1:-1] = (w[2:] - w[:-2]) / (2 * width)
+        v = solve(time_step * slope**2 + v)
+        history[k] = w[nodes // 2], v[nodes // 2]
+    return tuple(np.array([history[k] for k in outputs]).T)
+
+
+def moments_with_error(scene, times, half_width, nodes, time_step):
+    """Return w, v and an error estimate of each.
+
+    The solution is repeated with twice the time step and with twice the mesh width. The
+    scheme is of first order in time, so that the first difference is the error's leading
+    term; in space it is at least of first order, whatever the position of the kinks, so that
+    the second difference bounds it. Their sum is doubled to cover the higher orders.
+
+    Parameters
+    ----------
+    scene, times, half_width, nodes, time_step
+        As for `moments`; `times` multiples of twice `time_step`, (nodes - 1)/4 an integer.
+
+    Returns
+    -------
+    w, v, w_error, v_error : numpy.ndarray, shape (t,)
+    """
+    fine = np.array(moments(scene, times, half_width, nodes, time_step))
+    slow = np.array(moments(scene, times, half_width, nodes, 2 * time_step))
+    wide = np.array(moments(scene, times, half_width, (nodes + 1) // 2, time_step))
+    error = 2 * (np.abs(slow - fine) + np.abs(wide - fine)) + np.finfo(float).eps
+    return (*fine, *error)

@@ -1,0 +1,67 @@
+"""The non-smooth convex functions of the paper and their Moreau-Yosida regularisations.
+
+Both functions, |y| and the indicator chi_K of K = [-1, 1], are even, and the derivative of
+their regularisation is odd and piecewise linear: slope `inner` up to `knot`, slope `outer`
+beyond. These three numbers are the only definition; the regularised potential, its
+derivative (the penalty force), the exact flows of the kernels, the mesh of the PDE solvers
+and the typeset tables all derive from them.
+"""
+
+from dataclasses import dataclass
+
+import sympy
+
+n = sympy.Symbol("n", positive=True)
+
+
+@dataclass(frozen=True)
+class Penalty:
+    """Moreau-Yosida regularisation of an even convex function of one variable.
+
+    Attributes
+    ----------
+    name : str
+        LaTeX name of the regularised potential.
+    limit : str
+        LaTeX of the convex function itself, with ``%s`` for its argument.
+    knot, inner, outer : sympy.Expr
+        Position of the kink and slopes of the penalty force, functions of `n`.
+    """
+
+    name: str
+    limit: str
+    knot: sympy.Expr
+    inner: sympy.Expr
+    outer: sympy.Expr
+
+    def potential(self, z):
+        """Return the regularised potential phi_n(z), a sympy expression."""
+        beyond = sympy.Abs(z) - self.knot
+        linear = sympy.expand(self.inner * self.knot**2 / 2 + self.inner * self.knot * beyond)
+        return sympy.Piecewise(
+            (self.inner * z**2 / 2, sympy.Abs(z) <= self.knot),
+            (linear + self.outer * beyond**2 / 2, True),
+        )
+
+    def force(self, z):
+        """Return phi_n'(z), a sympy expression."""
+        tail = self.inner * self.knot + self.outer * (sympy.Abs(z) - self.knot)
+        return sympy.Piecewise(
+            (self.inner * z, sympy.Abs(z) <= self.knot), (sympy.sign(z) * tail, True)
+        )
+
+    def at(self, stiffness):
+        """Return (knot, inner, outer) as floats for n = `stiffness`, which may be inf."""
+        value = sympy.oo if stiffness == float("inf") else stiffness
+        return tuple(
+            float(sympy.limit(quantity, n, value))
+            for quantity in (self.knot, self.inner, self.outer)
+        )
+
+
+ABSOLUTE_VALUE = Penalty(
+    name="a_n", limit=r"\left|%s\right|", knot=1 / n, inner=n, outer=sympy.Integer(0)
+)
+BARRIER = Penalty(
+    name=r"\chi_n", limit=r"\chi_K(%s)", knot=sympy.Integer(1), inner=sympy.Integer(0), outer=n
+)

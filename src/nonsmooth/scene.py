@@ -1,0 +1,139 @@
+"""A scene: mechanical model + noise + potential + damping + penalization + observable."""
+
+import difflib
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import sympy
+
+from nonsmooth import models, noises
+from nonsmooth.errors import SceneError
+from nonsmooth.expressions import parse
+from nonsmooth.models import STATE_VARIABLES, x
+from nonsmooth.penalties import n as penalization
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is simulated and solved.
+
+    Parameters
+    ----------
+    model : str
+        ``"elasto_plastic"``, ``"friction"`` or ``"obstacle"``.
+    noise : str or White or Langevin or Hamiltonian
+        ``"white"``, ``"langevin"`` (unit Ornstein-Uhlenbeck), ``"hamiltonian"`` (unit
+        Kanai-Tajimi), or a noise object.
+    n : float
+        Penalization, "1"; ``inf`` is the non-smooth limit.
+    damping : float
+        C_b > 0, "1".
+    potential : str
+        U, a formula in ``x``.
+    observable : str
+        g, a formula in ``zeta, eta, y, x``.
+    start : dict
+        Initial values of the state variables; those not named start at 0.
+
+    Raises
+    ------
+    SceneError
+        If a name is unknown or a parameter out of range.
+    ExpressionError
+        If a formula cannot be read.
+    """
+
+    model: str
+    noise: object = "white"
+    n: float = 100.0
+    damping: float = 1.0
+    potential: str = "0"
+    observable: str = "y"
+    start: dict = field(default_factory=dict, hash=False)
+
+    def __post_init__(self):
+        _require_known("model", self.model, models.MODELS)
+        if isinstance(self.noise, str):
+            _require_known("noise", self.noise, noises.NOISES)
+            object.__setattr__(self, "noise", noises.NOISES[self.noise])
+        for name, value in (("n", self.n), ("damping", self.damping)):
+            if not value > 0:
+                raise SceneError(f"a scene needs {name} > 0, got {value}; choose a positive number")
+        if not self.damping < float("inf"):
+            raise SceneError("a scene needs a finite damping; choose a positive number")
+        for name in self.start:
+            _require_known("start variable", name, [s.name for s in self.variables])
+        unknown = self.observable_expression.free_symbols - set(self.variables)
+        if unknown:
+            raise SceneError(
+                f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
+                f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
+            )
+        self.potential_expression  # noqa: B018 - reads the formula, so that a bad one fails here
+
+    def with_n(self, n):
+        """Return the same scene with another penalization."""
+        return replace(self, n=n)
+
+    @property
+    def mechanics(self):
+        """The mechanical model's definition."""
+        return models.MODELS[self.model]
+
+    @property
+    def variables(self):
+        """All the variables of the paper's state Z^n, whether the observable needs them or not."""
+        own = {symbol for symbol in self.noise.drift}
+        return tuple(s for s in STATE_VARIABLES if s in own or s in (models.y, models.x))
+
+    @cached_property
+    def potential_expression(self):
+        """U(x), a sympy expression."""
+        return parse(self.potential, (x,))
+
+    @cached_property
+    def observable_expression(self):
+        """The observable g, a sympy expression."""
+        return parse(self.observable, STATE_VARIABLES)
+
+    @cached_property
+    def drift(self):
+        """F_n of Table 2: a dict from the symbols of `variables` to sympy expressions in n, C_b."""
+        return self.noise.drift | self.mechanics.drift(
+            self.potential_expression, self.noise.forcing
+        )
+
+    @cached_property
+    def state(self):
+        """Names of the smallest set of variables that determines the observable's law.
+
+        The observable's variables, closed under "the drift of one contains the other".
+        """
+        needed = {s for s in self.observable_expression.free_symbols}
+        while True:
+            grown = needed.union(
+                *(self.drift[s].free_symbols & set(self.variables) for s in needed)
+            )
+            if grown == needed:
+                return tuple(s.name for s in STATE_VARIABLES if s in needed)
+            needed = grown
+
+    def numerical_drift(self):
+        """Return `drift` with the scene's numbers in the place of n and C_b.
+
+        Raises
+        ------
+        SceneError
+            If n is infinite: the drift is then set-valued.
+        """
+        if self.n == float("inf"):
+            raise SceneError("the non-smooth limit n = inf has no drift; choose a finite n")
+        numbers = {penalization: sympy.Float(self.n), models.damping: sympy.Float(self.damping)}
+        return {s: expression.subs(numbers) for s, expression in self.drift.items()}
+
+
+def _require_known(what, name, known):
+    if name not in known:
+        near = difflib.get_close_matches(str(name), [str(k) for k in known], n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(known)}"
+        raise SceneError(f"unknown {what} {name!r}; {hint}")

@@ -1,0 +1,83 @@
+"""Tables in three forms from one content: CSV to compute with, LaTeX and Typst to read.
+
+Cells are LaTeX, with mathematics between dollar signs.
+"""
+
+from pathlib import Path
+
+import pandas as pd
+import tylax
+
+from nonsmooth.jobs import inputs, job
+
+
+def typeset(build, task):
+    """Run a task whose outputs are one table as .csv, .tex and .typ.
+
+    Parameters
+    ----------
+    build : callable
+        Takes the task's input artifacts and parameters by name; returns the table to compute
+        with and the table to read, two pandas.DataFrame.
+    task : object
+        See `nonsmooth.jobs`.
+    """
+    with job(task.log[0]):
+        plain, cells = build(**inputs(task), **dict(task.params.items()))
+        render = {
+            ".csv": lambda: plain.to_csv(index=False),
+            ".tex": lambda: latex(cells),
+            ".typ": lambda: typst(cells),
+        }
+        for path in map(Path, task.output):
+            partial = path.with_name(f".{path.name}.partial")
+            partial.write_text(render[path.suffix](), encoding="utf-8")
+            partial.replace(path)
+
+
+def latex(cells):
+    """Return a booktabs tabular."""
+    return cells.to_latex(index=False, escape=False, column_format="l" * len(cells.columns))
+
+
+def typst(cells):
+    """Return a Typst table with three rules, as booktabs has them."""
+    header = ", ".join(f"[{_typst(str(name))}]" for name in cells.columns)
+    rows = "".join(
+        "  " + ", ".join(f"[{_typst(str(cell))}]" for cell in row) + ",\n"
+        for row in cells.itertuples(index=False)
+    )
+    return (
+        f"#table(\n  columns: {len(cells.columns)},\n  table.hline(),\n"
+        f"  table.header({header}),\n  table.hline(stroke: 0.4pt),\n{rows}  table.hline(),\n)\n"
+    )
+
+
+def _typst(cell):
+    parts = cell.split("$")
+    if len(parts) % 2 == 0:
+        raise ValueError(f"unbalanced dollar signs in the cell {cell!r}")
+    return "".join(
+        f"${tylax.latex_to_typst(part)}$" if k % 2 else part for k, part in enumerate(parts)
+    )
+
+
+def scientific(value, digits=1):
+    """Spell a number as LaTeX mathematics in scientific notation."""
+    mantissa, exponent = f"{value:.{digits}e}".split("e")
+    return rf"${mantissa} \times 10^{{{int(exponent)}}}$"
+
+
+def penalization(n):
+    """Spell n as LaTeX mathematics."""
+    return r"$\infty$" if n == float("inf") else f"${n:g}$"
+
+
+def sorted_by(name, datasets):
+    """Return artifacts in the order of a scalar coordinate."""
+    return sorted(datasets, key=lambda dataset: float(dataset[name]))
+
+
+def frame(rows):
+    """Return a DataFrame from a list of dicts."""
+    return pd.DataFrame(rows)

@@ -1,0 +1,35 @@
+"""Time grids."""
+
+import numpy as np
+
+
+def logarithmic(first, last, count):
+    """Times from `first` to `last`, nearly equidistant in the logarithm.
+
+    They are multiples of a tenth of `first`, so that schemes with a constant step meet them;
+    neighbours that coincide are merged.
+
+    Returns
+    -------
+    numpy.ndarray, shape (k,), k <= count
+    """
+    unit = first / 10
+    multiples = np.unique(np.rint(np.geomspace(first, last, count) / unit))
+    return np.round(multiples * unit, 12)
+
+
+def equal_steps(times, step):
+    """Split [0, times[-1]] into runs of equal steps, none longer than `step`, ending at `times`.
+
+    Before the first output time the steps are at most a sixteenth of it, so that early
+    outputs on a logarithmic axis are as well resolved as late ones.
+
+    Returns
+    -------
+    list of (int, float)
+        Number of steps and their length, for each output time.
+    """
+    spans = np.diff(np.concatenate([[0.0], times]))
+    longest = np.minimum(step, np.maximum(times / 16, 1e-300))
+    counts = np.ceil(spans / longest - 1e-9).astype(int)
+    return [(int(k), float(span / k)) for k, span in zip(counts, spans, strict=True)]

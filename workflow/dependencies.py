@@ -1,0 +1,40 @@
+"""Which source files a script depends on: what Snakemake cannot see for itself."""
+
+import ast
+from functools import lru_cache
+from pathlib import Path
+
+import grimp
+
+PACKAGE = "nonsmooth"
+
+
+@lru_cache(maxsize=1)
+def _graph():
+    return grimp.build_graph(PACKAGE, cache_dir=None)
+
+
+@lru_cache(maxsize=None)
+def sources(script):
+    """List the modules of the package that a script imports, directly or through others.
+
+    Parameters
+    ----------
+    script : str
+        Path of the script, relative to the repository.
+
+    Returns
+    -------
+    list of str
+        Paths relative to the repository, sorted.
+    """
+    tree = ast.parse(Path(script).read_text(encoding="utf-8"))
+    named = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGE):
+            named |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Import):
+            named |= {alias.name for alias in node.names}
+    direct = {name for name in named if name in _graph().modules and name != PACKAGE}
+    needed = direct.union(*(_graph().find_upstream_modules(name) for name in direct)) - {PACKAGE}
+    return sorted(f"src/{name.replace('.', '/')}.py" for name in needed)

@@ -1,0 +1,185 @@
+# Figure 2b: W(sqrt(p) b, p T) by Monte Carlo and its limit W_star(b / gamma, T).
+
+
+rule crossing_shard:
+    message:
+        "Simulate shard {wildcards.shard} of the crossings at p = {wildcards.p}"
+    input:
+        modules=sources("workflow/scripts/crossing/shard.py"),
+    output:
+        ensure(f"{RESULTS}/crossing/shards/p={{p}}/{{shard}}.nc", non_empty=True),
+    params:
+        scene=lookup(dpath="crossing/scene", within=config),
+        threshold=lookup(dpath="crossing/threshold", within=config),
+        horizon=lookup(dpath="crossing/horizon", within=config),
+        outputs=lookup(dpath="crossing/outputs", within=config),
+        step=lookup(dpath="crossing/step", within=config),
+        shard=lookup(dpath="crossing/shard", within=config),
+        paths=lookup(dpath="crossing/paths", within=config),
+        seed=lookup(dpath="seed", within=config),
+        p=lambda wildcards: float(wildcards.p),
+        index=lambda wildcards: int(wildcards.shard),
+    log:
+        f"{RESULTS}/logs/crossing/p={{p}}_shard_{{shard}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/p={{p}}_shard_{{shard}}.tsv"
+    # the longest jobs come first
+    priority: 100
+    threads: 1
+    script:
+        "../scripts/crossing/shard.py"
+
+
+rule crossing_halving:
+    message:
+        "Halve the time step of the crossings at p = {wildcards.p}"
+    input:
+        modules=sources("workflow/scripts/crossing/halving.py"),
+    output:
+        ensure(f"{RESULTS}/crossing/halving/p={{p}}.nc", non_empty=True),
+    params:
+        scene=lookup(dpath="crossing/scene", within=config),
+        threshold=lookup(dpath="crossing/threshold", within=config),
+        horizon=lookup(dpath="crossing/horizon", within=config),
+        step=lookup(dpath="crossing/step", within=config),
+        paths=lookup(dpath="crossing/halving/paths", within=config),
+        seed=lookup(dpath="seed", within=config),
+        p=lambda wildcards: float(wildcards.p),
+    log:
+        f"{RESULTS}/logs/crossing/p={{p}}_halving.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/p={{p}}_halving.tsv"
+    priority: 50
+    threads: 1
+    script:
+        "../scripts/crossing/halving.py"
+
+
+rule crossing_growth:
+    message:
+        "Halve the time step in the growth of the variance"
+    input:
+        modules=sources("workflow/scripts/crossing/growth.py"),
+    output:
+        ensure(f"{RESULTS}/crossing/growth.nc", non_empty=True),
+    params:
+        scene=lookup(dpath="crossing/scene", within=config),
+        time=lookup(dpath="crossing/halving/growth_time", within=config),
+        step=lookup(dpath="crossing/step", within=config),
+        paths=lookup(dpath="crossing/halving/growth_paths", within=config),
+        seed=lookup(dpath="seed", within=config),
+    log:
+        f"{RESULTS}/logs/crossing/growth.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/growth.tsv"
+    threads: 1
+    script:
+        "../scripts/crossing/growth.py"
+
+
+rule crossing_monte_carlo:
+    message:
+        "Merge the shards of the crossings at p = {wildcards.p}"
+    input:
+        shards=expand(
+            "{results}/crossing/shards/p={{p}}/{shard}.nc",
+            results=RESULTS,
+            shard=shards(config["crossing"]),
+        ),
+        halving=rules.crossing_halving.output,
+        modules=sources("workflow/scripts/crossing/monte_carlo.py"),
+    output:
+        ensure(f"{RESULTS}/crossing/p={{p}}.nc", non_empty=True),
+    params:
+        p=lambda wildcards: float(wildcards.p),
+    log:
+        f"{RESULTS}/logs/crossing/p={{p}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/p={{p}}.tsv"
+    threads: 1
+    script:
+        "../scripts/crossing/monte_carlo.py"
+
+
+rule crossing_asymptotic:
+    message:
+        "Evaluate the asymptotic formula"
+    input:
+        modules=sources("workflow/scripts/crossing/asymptotic.py"),
+    output:
+        ensure(f"{RESULTS}/crossing/asymptotic.nc", non_empty=True),
+    params:
+        scene=lookup(dpath="crossing/scene", within=config),
+        threshold=lookup(dpath="crossing/threshold", within=config),
+        horizon=lookup(dpath="crossing/horizon", within=config),
+        outputs=lookup(dpath="crossing/outputs", within=config),
+    log:
+        f"{RESULTS}/logs/crossing/asymptotic.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/asymptotic.tsv"
+    threads: 1
+    script:
+        "../scripts/crossing/asymptotic.py"
+
+
+rule check_crossing:
+    message:
+        "Check that the time step's bias is below the standard error"
+    input:
+        monte_carlo=expand(
+            "{results}/crossing/p={p}.nc", results=RESULTS, p=map(label, config["crossing"]["p"])
+        ),
+        asymptotic=rules.crossing_asymptotic.output,
+        growth=rules.crossing_growth.output,
+        modules=sources("workflow/scripts/crossing/check.py"),
+    output:
+        ensure(f"{RESULTS}/crossing/check.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/crossing/check.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/check.tsv"
+    threads: 1
+    script:
+        "../scripts/crossing/check.py"
+
+
+rule figure_2b:
+    message:
+        "Draw figure 2b"
+    input:
+        monte_carlo=expand(
+            "{results}/crossing/p={p}.nc", results=RESULTS, p=map(label, config["crossing"]["p"])
+        ),
+        asymptotic=rules.crossing_asymptotic.output,
+        check=rules.check_crossing.output,
+        modules=sources("workflow/scripts/crossing/figure_2b.py"),
+    output:
+        report(
+            multiext(f"{RESULTS}/figures/figure_2b", ".pdf", ".png"),
+            caption="../report/figure_2b.rst",
+            category="Figures",
+        ),
+    log:
+        f"{RESULTS}/logs/figures/figure_2b.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figures/figure_2b.tsv"
+    threads: 1
+    script:
+        "../scripts/crossing/figure_2b.py"
+
+
+rule table_time_step:
+    message:
+        "Typeset the table of the time step's bias"
+    input:
+        check=rules.check_crossing.output,
+        modules=sources("workflow/scripts/crossing/table_time_step.py"),
+    output:
+        multiext(f"{RESULTS}/tables/table_time_step", ".csv", ".tex", ".typ"),
+    log:
+        f"{RESULTS}/logs/tables/table_time_step.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/tables/table_time_step.tsv"
+    threads: 1
+    script:
+        "../scripts/crossing/table_time_step.py"

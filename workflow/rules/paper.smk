@@ -1,0 +1,60 @@
+# The paper: every figure, every table, every number, typeset.
+
+FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5"]
+TABLES = ["table_1", "table_2", "table_3", "table_4", "table_time_step"]
+
+
+rule figures:
+    input:
+        expand("{results}/figures/{figure}.{ext}", results=RESULTS, figure=FIGURES, ext=["pdf", "png"]),
+
+
+rule tables:
+    input:
+        expand("{results}/tables/{table}.{ext}", results=RESULTS, table=TABLES, ext=["csv", "tex", "typ"]),
+
+
+rule values:
+    message:
+        "Collect the numbers that the text quotes"
+    input:
+        spectral=rules.variance_spectral.output,
+        monte_carlo=rules.variance_monte_carlo.output,
+        agreement=rules.check_variance.output,
+        crossing=rules.check_crossing.output,
+        modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
+    output:
+        ensure(f"{RESULTS}/paper/values.json", non_empty=True),
+    params:
+        config=config,
+    log:
+        f"{RESULTS}/logs/paper/values.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/paper/values.tsv"
+    threads: 1
+    script:
+        "../scripts/paper/values.py"
+
+
+rule paper:
+    message:
+        "Typeset the paper"
+    input:
+        figures=rules.figures.input,
+        tables=rules.tables.input,
+        values=rules.values.output,
+        template="paper/paper.typ",
+        modules=sources("workflow/scripts/paper/typeset.py"),
+    output:
+        report(
+            ensure(PAPER, non_empty=True), caption="../report/paper.rst", category="Paper"
+        ),
+    params:
+        results=RESULTS,
+    log:
+        f"{RESULTS}/logs/paper/paper.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/paper/paper.tsv"
+    threads: 1
+    script:
+        "../scripts/paper/typeset.py"

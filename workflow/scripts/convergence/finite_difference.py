@@ -1,0 +1,30 @@
+"""One column of table 4 by the paper's scheme."""
+
+from nonsmooth import artifact
+from nonsmooth.finite_difference import moments_with_error
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def paper_scheme(scene, n, horizon, half_width, nodes, time_step):
+    """March the paper's scheme to T.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene, n=n)
+    _, v, _, error = moments_with_error(scene, [horizon], half_width, nodes, time_step)
+    return artifact.dataset(
+        "Growth of the variance by the paper's finite differences",
+        f"{scene}, T = {horizon}",
+        {"n": ((), n, "penalization")},
+        {
+            "growth": ((), v[0] / horizon, "v(0, T)/T"),
+            "growth_error": ((), error[0] / horizon, "error bound from coarser steps and meshes"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(paper_scheme, snakemake)

@@ -1,0 +1,37 @@
+"""One column of table 4 by spectral elements, and gamma_n^2 in closed form."""
+
+from nonsmooth import artifact
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+from nonsmooth.variance import asymptotic_variance, variance
+
+
+def reference(scene, n, horizon, tolerance):
+    """Solve for v(0, T)/T and gamma_n^2.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene, n=n)
+    solution = variance(scene, [horizon], tol=tolerance)
+    gamma2 = asymptotic_variance(scene)
+    growth = float(solution["v"][0]) / horizon
+    error = float(solution["v_error"][0]) / horizon
+    return artifact.dataset(
+        "Growth of the variance by spectral elements",
+        f"{scene}, T = {horizon}",
+        {"n": ((), n, "penalization")},
+        {
+            "growth": ((), growth, "v(0, T)/T"),
+            "growth_error": ((), error, "error bound of v(0, T)/T"),
+            "gamma2": ((), gamma2.value, "gamma_n^2 in closed form"),
+            "gamma2_error": ((), gamma2.error, "error bound of gamma_n^2"),
+            "offset": ((), growth - gamma2.value, "v(0, T)/T - gamma_n^2"),
+            "offset_error": ((), error + gamma2.error, "error bound of the offset"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(reference, snakemake)

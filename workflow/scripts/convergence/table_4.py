@@ -1,0 +1,48 @@
+"""Table 4: v(0, T)/T for increasing n, printed and computed."""
+
+import yaml
+
+from nonsmooth.tables import frame, penalization, scientific, sorted_by, typeset
+
+PRINTED = "paper/printed.yaml"
+
+
+def convergence(spectral, finite_difference):
+    """Tabulate, for each n, the printed value and ours.
+
+    Returns
+    -------
+    plain, cells : pandas.DataFrame
+    """
+    with open(PRINTED, encoding="utf-8") as file:
+        printed = yaml.safe_load(file)["tab:convergence-vng-n"]
+    scheme = {float(run["n"]): run for run in finite_difference}
+    plain, cells = [], []
+    for run in sorted_by("n", spectral):
+        n = float(run["n"])
+        value = {name: float(run[name]) for name in run.data_vars}
+        paper = scheme.get(n)
+        plain.append(
+            {"n": n, "printed": printed.get(n)}
+            | {
+                f"finite_difference{kind}": float(paper[f"growth{kind}"]) if paper else None
+                for kind in ("", "_error")
+            }
+            | value
+        )
+        cells.append(
+            {
+                "$n$": penalization(n),
+                "printed": f"{printed[n]:.6f}" if n in printed else "--",
+                "paper's scheme": f"{float(paper['growth']):.7f}" if paper else "--",
+                r"$\pm$": scientific(float(paper["growth_error"])) if paper else "--",
+                "$v(0,T)/T$": f"{value['growth']:.10f}",
+                r"$\gamma_n^2$": f"{value['gamma2']:.12f}",
+                r"$v(0,T)/T - \gamma_n^2$": scientific(value["offset"], 4),
+            }
+        )
+    return frame(plain), frame(cells)
+
+
+if __name__ == "__main__":
+    typeset(convergence, snakemake)

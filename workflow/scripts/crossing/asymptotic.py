@@ -1,0 +1,37 @@
+"""The limit of figure 2b: W_star(b / gamma, T)."""
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.crossing import crossing_probability
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def limit(scene, threshold, horizon, outputs):
+    """Evaluate the paper's asymptotic formula.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene)
+    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    solution = crossing_probability(scene, threshold, horizons, method="asymptotic")
+    return artifact.dataset(
+        "Asymptotic threshold crossing probability",
+        f"W_star(b / gamma, T) of {scene}, b = {threshold}",
+        {"horizon": ("horizon", horizons, "T")},
+        {
+            "probability": ("horizon", solution["probability"].values, "W_star(b / gamma, T)"),
+            "probability_error": (
+                "horizon",
+                solution["probability_error"].values,
+                "error inherited from gamma^2",
+            ),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(limit, snakemake)

@@ -1,0 +1,77 @@
+"""Check figure 2b: the time step's bias is below the standard error, and W tends to W_star."""
+
+import numpy as np
+from scipy.stats import norm
+
+from nonsmooth import artifact
+from nonsmooth.errors import CheckError
+from nonsmooth.jobs import produce
+
+FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
+
+
+def compare(monte_carlo, asymptotic, growth):
+    """Bound the bias of the time step and measure the distance to the limit.
+
+    A bias of the first-passage times is, for p large, the bias of the growth rate of the
+    variance, which figure 2a's halving measures precisely; the direct measurement at each p
+    must agree with it within its standard error, and the bias it implies for W must be below
+    the largest standard error of W.
+
+    Parameters
+    ----------
+    monte_carlo : list of xarray.Dataset
+        One per p.
+    asymptotic : xarray.Dataset
+    growth : xarray.Dataset
+        The relative bias of v by the same step.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    CheckError
+        If the bias is not below the standard error, or the two measurements contradict.
+    """
+    p = np.array([float(d["p"]) for d in monte_carlo])
+    order = np.argsort(p)
+    monte_carlo, p = [monte_carlo[i] for i in order], p[order]
+    column = {
+        name: np.array([float(d[name]) for d in monte_carlo])
+        for name in ("bias", "bias_error", "slope")
+    }
+    standard_error = np.array([float(d["probability_error"].max()) for d in monte_carlo])
+    relative, relative_error = float(growth["bias"]), float(growth["bias_error"])
+    expected, expected_error = relative * column["slope"], relative_error * column["slope"]
+    z = norm.isf(FALSE_ALARM / 2 / len(p))
+    contradiction = np.abs(column["bias"] - expected) / np.hypot(
+        column["bias_error"], expected_error
+    )
+    distance = np.array(
+        [float(np.abs(d["probability"] - asymptotic["probability"]).max()) for d in monte_carlo]
+    )
+    if np.any(contradiction[p >= 10] > z):
+        raise CheckError("two measurements of the time step's bias contradict each other; "
+                         "look for a mistake in the splitting")
+    if np.any(np.abs(expected) + 1.96 * expected_error > standard_error):
+        raise CheckError("the time step's bias is not below the standard error; "
+                         "reduce crossing.step")
+    return artifact.dataset(
+        "Time step bias and distance to the limit",
+        "for each p, the largest over T",
+        {"p": ("p", p, "scale p")},
+        {
+            "distance": ("p", distance, "largest distance to W_star"),
+            "standard_error": ("p", standard_error, "largest standard error of W"),
+            "bias": ("p", column["bias"], "bias of W from the shift of first-passage times"),
+            "bias_error": ("p", column["bias_error"], "its standard error"),
+            "limit_bias": ("p", expected, "bias of W from the growth rate of the variance"),
+            "limit_bias_error": ("p", expected_error, "its standard error"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(compare, snakemake)

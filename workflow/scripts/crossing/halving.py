@@ -1,0 +1,42 @@
+"""By how much halving the time step shifts the first-passage times of figure 2b."""
+
+from functools import partial
+
+from nonsmooth import artifact, strang
+from nonsmooth.crossing import first_passage_shift
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def halving(scene, threshold, horizon, p, step, paths, seed, threads):
+    """Estimate the relative bias of the first-passage times from steps h and h/2.
+
+    Returns
+    -------
+    xarray.Dataset
+        From an ensemble independent of the shards'. With a scheme of weak order q the bias of step h is the change by halving, divided by
+        1 - 2^-q.
+    """
+    scene = Scene(**scene)
+    count, total, square = first_passage_shift(
+        scene, threshold, horizon, p, step, paths, (seed, 1), threads
+    )
+    factor = 1 / (1 - 2 ** -strang.weak_order(scene))
+    mean = total / count
+    return artifact.dataset(
+        "Bias of the time step in the first-passage times",
+        f"steps {step} and {step / 2} on the same paths of {scene}, b = {threshold}, p = {p}",
+        {"p": ((), p, "scale p")},
+        {
+            "shift": ((), factor * mean, "bias of the mean log first-passage time"),
+            "shift_error": (
+                (),
+                factor * ((square / count - mean**2) / count) ** 0.5,
+                "standard error of the bias",
+            ),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(halving, threads=snakemake.threads), snakemake)

@@ -1,0 +1,39 @@
+"""One shard of figure 2b: how many paths cross by each horizon."""
+
+from functools import partial
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.crossing import first_passage_counts
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def shard(scene, threshold, horizon, outputs, p, step, paths, shard, index, seed, threads):
+    """Simulate the paths number `index * shard` onwards, `shard` of them or what is left.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    first = index * shard
+    count = min(shard, paths - first)
+    scene = Scene(**scene)
+    crossed = first_passage_counts(
+        scene, threshold, horizons, p, step, count, seed, first, threads
+    )
+    return artifact.dataset(
+        "Numbers of paths that cross the threshold",
+        f"shard {index} of {scene}, b = {threshold}, p = {p}",
+        {"horizon": ("horizon", horizons, "T")},
+        {
+            "crossed": ("horizon", np.cumsum(crossed), "paths that have crossed by p T"),
+            "paths": ((), count, "number of paths"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(shard, threads=snakemake.threads), snakemake)

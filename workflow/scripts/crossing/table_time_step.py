@@ -1,0 +1,29 @@
+"""Table of figure 2b's time step bias, standard error and distance to the limit."""
+
+from nonsmooth.tables import frame, scientific, typeset
+
+
+def time_step(check):
+    """Tabulate for each p the largest bias over T beside the largest standard error.
+
+    Returns
+    -------
+    plain, cells : pandas.DataFrame
+    """
+    plain = check.to_dataframe().reset_index()
+    cells = [
+        {
+            "$p$": f"${row.p:g}$",
+            "standard error": scientific(row.standard_error),
+            "bias, passage times": rf"{scientific(row.bias)} $\pm$ {scientific(row.bias_error)}",
+            "bias, variance": rf"{scientific(row.limit_bias)} $\pm$ "
+            rf"{scientific(row.limit_bias_error)}",
+            r"distance to $W_\star$": f"{row.distance:.4f}",
+        }
+        for row in plain.itertuples()
+    ]
+    return plain, frame(cells)
+
+
+if __name__ == "__main__":
+    typeset(time_step, snakemake)

@@ -1,0 +1,88 @@
+"""The numbers that the text of the paper quotes, spelt as they stand there."""
+
+import json
+from pathlib import Path
+
+import yaml
+
+from nonsmooth.jobs import inputs, job
+
+PRINTED = "paper/printed.yaml"
+
+
+def values(config, spectral, monte_carlo, agreement, crossing):
+    """Collect numbers from the artifacts and the configuration.
+
+    Returns
+    -------
+    dict
+        Nested, of strings.
+    """
+    with open(PRINTED, encoding="utf-8") as file:
+        printed = yaml.safe_load(file)
+    variance, sweep = config["variance"], config["crossing"]
+    v, tau = spectral["v"].values, spectral["time"].values
+    largest = crossing.isel(p=-1)
+    return {
+        "variance": {
+            "n": f"{variance['scene']['n']:g}",
+            "gamma2": f"{float(spectral['gamma2']):.15f}",
+            "gamma2_error": _scientific(spectral["gamma2_error"]),
+            "last": f"{v[-1] / tau[-1]:.10f}",
+            "horizon": f"{tau[-1]:g}",
+            "spectral_error": _scientific((spectral["v_error"] / spectral["time"]).max()),
+            "paths": f"{int(monte_carlo['paths']):,}",
+            "step": f"{variance['monte_carlo']['step']:g}",
+            "standard_error": _scientific((monte_carlo["v_error"] / monte_carlo["time"])[-1]),
+            "bias": _scientific((monte_carlo["bias"] / monte_carlo["time"])[-1]),
+            "finite_difference_agreement": f"{float(agreement['finite_difference'].max()):.2f}",
+            "monte_carlo_agreement": f"{float(agreement['monte_carlo'].max()):.2f}",
+            "threshold": f"{float(agreement['threshold']):.2f}",
+            "printed": str(printed["fig:fpn-cmp-PDE-MC"]["asymptotic_value"]),
+            "rounded": f"{float(spectral['gamma2']):.4f}",
+            "nodes": f"{variance['finite_difference']['nodes']}",
+            "time_step": f"{variance['finite_difference']['time_step']:g}",
+            "half_width": f"{variance['finite_difference']['half_width']:g}",
+        },
+        "crossing": {
+            "n": f"{sweep['scene']['n']:g}",
+            "threshold": f"{sweep['threshold']:g}",
+            "horizon": f"{sweep['horizon']:g}",
+            "paths": f"{sweep['paths']:,}",
+            "step": f"{sweep['step']:g}",
+            "p": ", ".join(f"{p:g}" for p in sweep["p"]),
+            "largest_p": f"{float(largest['p']):g}",
+            "distance": f"{float(largest['distance']):.4f}",
+            "standard_error": f"{float(largest['standard_error']):.4f}",
+            "ratio": f"{float(largest['distance'] / largest['standard_error']):.0f}",
+        },
+        "convergence": {
+            key: f"{config['convergence'][key]:g}" for key in ("horizon",)
+        }
+        | {
+            key: f"{config['convergence']['finite_difference'][key]:g}"
+            for key in ("half_width", "nodes", "time_step")
+        },
+        "trajectories": {
+            "step": f"{config['trajectories']['step']:g}",
+            "models": {
+                model.replace("_", "-"): {
+                    "potential": parameters["potential"],
+                    "damping": f"{parameters['damping']:g}",
+                }
+                for model, parameters in config["trajectories"]["models"].items()
+            },
+        },
+        "seed": str(config["seed"]),
+    }
+
+
+def _scientific(value):
+    mantissa, exponent = f"{float(value):.1e}".split("e")
+    return f"{mantissa} dot 10^({int(exponent)})"
+
+
+if __name__ == "__main__":
+    with job(snakemake.log[0]):
+        result = values(snakemake.params.config, **inputs(snakemake))
+        Path(snakemake.output[0]).write_text(json.dumps(result, indent=1), encoding="utf-8")

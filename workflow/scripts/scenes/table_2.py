@@ -1,0 +1,37 @@
+"""Table 2: drift and diffusion of the extended state for each noise."""
+
+import sympy
+
+from nonsmooth import generic
+from nonsmooth.noises import NOISES
+from nonsmooth.tables import frame, typeset
+
+
+def equations():
+    """Tabulate F_n and sigma from the definitions of noises and oscillator.
+
+    Returns
+    -------
+    plain, cells : pandas.DataFrame
+    """
+    plain, cells = [], []
+    for noise in NOISES.values():
+        drift, sigma = generic.drift(noise), generic.diffusion(noise)
+        state = sympy.latex(sympy.Matrix(list(drift)))
+        plain += [
+            {"noise": noise.title, "variable": str(s), "F_n": str(f), "sigma": int(e)}
+            for (s, f), e in zip(drift.items(), sigma, strict=True)
+        ]
+        cells.append(
+            {
+                "noise": noise.title,
+                "$Z^n$": f"${state}$",
+                "$F_n$": f"${sympy.latex(sympy.Matrix(list(drift.values())))}$",
+                r"$\sigma$": f"${sympy.latex(sigma)}$",
+            }
+        )
+    return frame(plain), frame(cells)
+
+
+if __name__ == "__main__":
+    typeset(equations, snakemake)

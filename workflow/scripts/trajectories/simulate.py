@@ -1,0 +1,42 @@
+"""One path of a model for several penalizations, all driven by the same Brownian path."""
+
+import numpy as np
+import xarray as xr
+
+from nonsmooth import artifact
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+from nonsmooth.trajectories import simulate
+
+
+def same_noise(model, potential, damping, n, horizon, step, seed, path):
+    """Simulate the oscillator with white noise for each penalization.
+
+    Returns
+    -------
+    xarray.Dataset
+        y and x over (n, time); n = inf is the non-smooth limit.
+    """
+    scene = Scene(model=model, potential=potential, damping=damping, observable="x")
+    times = step * np.arange(1, round(horizon / step) + 1)
+    runs = [
+        simulate(scene.with_n(k), horizon, step, 1, (seed, path), times=times, keep="paths")
+        for k in n
+    ]
+    joined = xr.concat(runs, dim="n").isel(path=0)
+    return artifact.dataset(
+        f"Trajectories of the {scene.mechanics.title.lower()} model",
+        f"{scene.with_n(float('inf'))} and its penalizations on one Brownian path",
+        {
+            "n": ("n", [float(k) for k in n], "penalization; inf is the non-smooth limit"),
+            "time": ("time", joined["time"].values, "time"),
+        },
+        {
+            "y": (("n", "time"), joined["y"].values, "velocity"),
+            "x": (("n", "time"), joined["x"].values, "displacement"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(same_noise, snakemake)

@@ -1,0 +1,60 @@
+"""Check that the three methods of figure 2a agree within their stated errors."""
+
+import numpy as np
+from scipy.stats import norm
+
+from nonsmooth import artifact
+from nonsmooth.errors import CheckError
+from nonsmooth.jobs import produce
+
+FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although nothing is wrong
+
+
+def deviations(spectral, finite_difference, monte_carlo):
+    """Compare at every plotted tau; deviations are in units of what is allowed.
+
+    Allowed is, for the finite differences, the sum of both error bounds; for Monte Carlo, z
+    standard errors (of the sample and of the bias estimate together) after removal of the
+    estimated bias, z from the false-alarm rate by Bonferroni over the tau.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    CheckError
+        If a deviation exceeds what is allowed.
+    """
+    tau, v = spectral["time"].values, spectral["v"].values
+    z = norm.isf(FALSE_ALARM / 2 / len(tau))
+    allowed = {
+        "finite_difference": finite_difference["v_error"].values,
+        "monte_carlo": z * np.hypot(monte_carlo["v_error"], monte_carlo["bias_error"]).values,
+    }
+    values = {
+        "finite_difference": finite_difference["v"].values,
+        "monte_carlo": (monte_carlo["v"] - monte_carlo["bias"]).values,
+    }
+    ratio = {
+        name: np.abs(values[name] - v) / (allowed[name] + spectral["v_error"].values)
+        for name in values
+    }
+    for name, deviation in ratio.items():
+        worst = np.argmax(deviation)
+        if not deviation[worst] <= 1:
+            raise CheckError(
+                f"{name} deviates from the spectral elements by {deviation[worst]:.2f} times its "
+                f"allowed error at tau = {tau[worst]:g}; refine it or look for a mistake"
+            )
+    return artifact.dataset(
+        "Agreement of the three methods",
+        "deviation from the spectral elements divided by the allowed error; all at most 1",
+        {"time": ("time", tau, "tau")},
+        {name: ("time", d, f"relative deviation of {name}") for name, d in ratio.items()}
+        | {"threshold": ((), z, "allowed Monte Carlo deviation in standard errors")},
+    )
+
+
+if __name__ == "__main__":
+    produce(deviations, snakemake)

@@ -1,0 +1,31 @@
+"""w and v of figure 2a by the paper's finite-difference scheme."""
+
+from nonsmooth import artifact, times
+from nonsmooth.finite_difference import moments_with_error
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def paper_scheme(scene, first_time, horizon, points, half_width, nodes, time_step):
+    """March the paper's scheme to the last tau.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene)
+    tau = times.logarithmic(first_time, horizon, points)
+    _, v, _, v_error = moments_with_error(scene, tau, half_width, nodes, time_step)
+    return artifact.dataset(
+        "Variance of the integrated observable by the paper's finite differences",
+        f"v(0, tau) of {scene}",
+        {"time": ("time", tau, "tau")},
+        {
+            "v": ("time", v, "variance of int_0^tau g"),
+            "v_error": ("time", v_error, "error bound of v from coarser steps and meshes"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(paper_scheme, snakemake)

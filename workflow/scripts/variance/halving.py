@@ -1,0 +1,36 @@
+"""What halving the time step changes in figure 2a's Monte Carlo."""
+
+from functools import partial
+
+from nonsmooth import artifact, strang, times
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+from nonsmooth.trajectories import central_moments, step_bias
+
+
+def halving(scene, first_time, horizon, points, step, paths, seed, threads):
+    """Estimate the bias of v from steps h and h/2 on the same Brownian paths.
+
+    Returns
+    -------
+    xarray.Dataset
+        From an ensemble independent of the shards'. With a scheme of weak order q the bias of step h is the change by halving, divided by
+        1 - 2^-q.
+    """
+    scene = Scene(**scene)
+    tau = times.logarithmic(first_time, horizon, points)
+    change = central_moments(step_bias(scene, horizon, step, paths, (seed, 1), tau, threads))
+    factor = 1 / (1 - 2 ** -strang.weak_order(scene))
+    return artifact.dataset(
+        "Bias of the time step in the variance of the integrated observable",
+        f"steps {step} and {step / 2} on the same paths of {scene}",
+        {"time": ("time", tau, "tau")},
+        {
+            "bias": ("time", factor * change["mean"], "bias of v"),
+            "bias_error": ("time", factor * change["mean_error"], "standard error of the bias"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(halving, threads=snakemake.threads), snakemake)

@@ -1,0 +1,40 @@
+"""Merge the shards of figure 2a's Monte Carlo and attach their errors."""
+
+from functools import reduce
+
+from nonsmooth import artifact
+from nonsmooth.jobs import produce
+from nonsmooth.trajectories import central_moments
+
+
+def merge(shards, halving):
+    """Add up power sums in the order of the shards and estimate v.
+
+    Parameters
+    ----------
+    shards : list of xarray.Dataset
+    halving : xarray.Dataset
+        The change by halving the step.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    total = reduce(lambda a, b: a + b, (shard["power_sum"] for shard in shards)).to_dataset()
+    moments = central_moments(total)
+    return artifact.dataset(
+        "Variance of the integrated observable by Monte Carlo",
+        shards[0].attrs["summary"].replace("shard 0", "all shards"),
+        {"time": ("time", total["time"].values, "tau")},
+        {
+            "v": ("time", moments["variance"], "variance of int_0^tau g"),
+            "v_error": ("time", moments["variance_error"], "standard error of v"),
+            "bias": ("time", halving["bias"].values, "bias of v by the time step"),
+            "bias_error": ("time", halving["bias_error"].values, "standard error of the bias"),
+            "paths": ((), total["power_sum"].values[0, 0], "number of paths"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(merge, snakemake)

@@ -1,0 +1,34 @@
+"""w and v of figure 2a by spectral elements, the reference."""
+
+from nonsmooth import artifact, times
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+from nonsmooth.variance import asymptotic_variance, variance
+
+
+def reference(scene, first_time, horizon, points, tolerance):
+    """Solve for v(0, tau) at logarithmic tau and for gamma^2.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene)
+    tau = times.logarithmic(first_time, horizon, points)
+    solution = variance(scene, tau, tol=tolerance)
+    gamma2 = asymptotic_variance(scene)
+    return artifact.dataset(
+        "Variance of the integrated observable by spectral elements",
+        f"v(0, tau) and gamma^2 of {scene}",
+        {"time": ("time", tau, "tau")},
+        {
+            "v": ("time", solution["v"].values, "variance of int_0^tau g"),
+            "v_error": ("time", solution["v_error"].values, "error bound of v"),
+            "gamma2": ((), gamma2.value, "asymptotic variance gamma^2"),
+            "gamma2_error": ((), gamma2.error, "error bound of gamma^2"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(reference, snakemake)
