@@ -1,7 +1,6 @@
 """Artifacts: netCDF files with units, errors and provenance, written whole or not at all."""
 
 import hashlib
-import os
 from importlib.metadata import version
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from nonsmooth.errors import ArtifactError
+from nonsmooth.files import whole
 
 _MARK = "nonsmooth"  # the `source` attribute starts with it
 
@@ -98,19 +98,8 @@ def write(dataset, path, history):
         "summary": dataset.attrs["summary"],
         "title": dataset.attrs["title"],
     }
-    partial = path.with_name(f".{path.name}.partial")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with whole(path) as partial:
         dataset.to_netcdf(partial, engine="netcdf4", format="NETCDF4")
-        with open(partial, "rb") as file:
-            os.fsync(file.fileno())
-        os.replace(partial, path)
-    except OSError as error:
-        raise ArtifactError(
-            f"cannot write {path} ({error.strerror or error}); make its folder writable"
-        ) from None
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 def read(path):

@@ -8,6 +8,7 @@ mpl.use("agg")
 
 import matplotlib.pyplot as plt
 
+from nonsmooth.files import whole
 from nonsmooth.jobs import inputs, job
 
 TEXT_WIDTH = 6.3  # inches
@@ -46,10 +47,9 @@ def draw(plot, task):
     with job(task.log[0]), mpl.rc_context(STYLE):
         figure = plot(**inputs(task), **dict(task.params.items()))
         for path in map(Path, task.output):
-            partial = path.with_name(f".partial{path.suffix}")
             metadata = {"CreationDate": None} if path.suffix == ".pdf" else {"Software": None}
-            figure.savefig(partial, metadata=metadata)
-            partial.replace(path)
+            with whole(path) as partial:
+                figure.savefig(partial, metadata=metadata)
         plt.close(figure)
 
 
@@ -61,7 +61,8 @@ def trajectory(dataset, limits):
     dataset : xarray.Dataset
         y and x over (n, time).
     limits : dict
-        Axis limits of the panels: keys ``"Y"``, ``"X"`` and ``"phase"`` (X limits, Y limits).
+        Smallest axis limits of the panels: keys ``"Y"``, ``"X"`` and ``"phase"`` (X, Y); they
+        are widened where the data need it.
 
     Returns
     -------
@@ -84,9 +85,18 @@ def trajectory(dataset, limits):
         axes[0].plot(time, run["y"], label=text, **options)
         axes[1].plot(time, run["x"], **options)
         axes[2].plot(run["x"], run["y"], **options)
-    for axis, name in zip(axes, "YX", strict=False):
+    y, x = dataset["y"].values, dataset["x"].values
+    for axis, name, values in zip(axes, "YX", (y, x), strict=False):
         axis.set(xlabel="time $t$", ylabel=f"${name}$", xlim=(time[0], time[-1]))
-        axis.set_ylim(*limits[name])
-    axes[2].set(xlabel="$X$", ylabel="$Y$", xlim=limits["phase"][0], ylim=limits["phase"][1])
+        axis.set_ylim(_containing(limits[name], values))
+    axes[2].set(xlabel="$X$", ylabel="$Y$")
+    axes[2].set_xlim(_containing(limits["phase"][0], x))
+    axes[2].set_ylim(_containing(limits["phase"][1], y))
     figure.legend(loc="outside upper center", ncols=3)
     return figure
+
+
+def _containing(limits, values):
+    """Widen axis limits to contain the values."""
+    margin = 0.03 * (values.max() - values.min())
+    return min(limits[0], values.min() - margin), max(limits[1], values.max() + margin)

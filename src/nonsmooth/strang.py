@@ -15,6 +15,7 @@ same Brownian path.
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -60,6 +61,7 @@ class Strang(NamedTuple):
     formula: object
 
 
+@lru_cache(maxsize=1024)
 def strang(scene, step):
     """Return the coefficients of a scene's splitting.
 

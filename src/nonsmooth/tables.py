@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 import tylax
 
+from nonsmooth.files import whole
 from nonsmooth.jobs import inputs, job
 
 
@@ -30,9 +31,8 @@ def typeset(build, task):
             ".typ": lambda: typst(cells),
         }
         for path in map(Path, task.output):
-            partial = path.with_name(f".{path.name}.partial")
-            partial.write_text(render[path.suffix](), encoding="utf-8")
-            partial.replace(path)
+            with whole(path) as partial:
+                partial.write_text(render[path.suffix](), encoding="utf-8")
 
 
 def latex(cells):

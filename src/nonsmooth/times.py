@@ -32,4 +32,5 @@ def equal_steps(times, step):
     spans = np.diff(np.concatenate([[0.0], times]))
     longest = np.minimum(step, np.maximum(times / 16, 1e-300))
     counts = np.ceil(spans / longest - 1e-9).astype(int)
-    return [(int(k), float(span / k)) for k, span in zip(counts, spans, strict=True)]
+    # rounded, so that equal steps are the same number and share their coefficients
+    return [(int(k), float(f"{span / k:.12g}")) for k, span in zip(counts, spans, strict=True)]

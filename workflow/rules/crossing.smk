@@ -86,7 +86,7 @@ rule crossing_monte_carlo:
             results=RESULTS,
             shard=shards(config["crossing"]),
         ),
-        halving=rules.crossing_halving.output,
+        halving=rules.crossing_halving.output[0],
         modules=sources("workflow/scripts/crossing/monte_carlo.py"),
     output:
         ensure(f"{RESULTS}/crossing/p={{p}}.nc", non_empty=True),
@@ -129,8 +129,8 @@ rule check_crossing:
         monte_carlo=expand(
             "{results}/crossing/p={p}.nc", results=RESULTS, p=map(label, config["crossing"]["p"])
         ),
-        asymptotic=rules.crossing_asymptotic.output,
-        growth=rules.crossing_growth.output,
+        asymptotic=rules.crossing_asymptotic.output[0],
+        growth=rules.crossing_growth.output[0],
         modules=sources("workflow/scripts/crossing/check.py"),
     output:
         ensure(f"{RESULTS}/crossing/check.nc", non_empty=True),
@@ -150,8 +150,8 @@ rule figure_2b:
         monte_carlo=expand(
             "{results}/crossing/p={p}.nc", results=RESULTS, p=map(label, config["crossing"]["p"])
         ),
-        asymptotic=rules.crossing_asymptotic.output,
-        check=rules.check_crossing.output,
+        asymptotic=rules.crossing_asymptotic.output[0],
+        check=rules.check_crossing.output[0],
         modules=sources("workflow/scripts/crossing/figure_2b.py"),
     output:
         report(
@@ -172,7 +172,7 @@ rule table_time_step:
     message:
         "Typeset the table of the time step's bias"
     input:
-        check=rules.check_crossing.output,
+        check=rules.check_crossing.output[0],
         modules=sources("workflow/scripts/crossing/table_time_step.py"),
     output:
         multiext(f"{RESULTS}/tables/table_time_step", ".csv", ".tex", ".typ"),

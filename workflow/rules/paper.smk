@@ -18,10 +18,10 @@ rule values:
     message:
         "Collect the numbers that the text quotes"
     input:
-        spectral=rules.variance_spectral.output,
-        monte_carlo=rules.variance_monte_carlo.output,
-        agreement=rules.check_variance.output,
-        crossing=rules.check_crossing.output,
+        spectral=rules.variance_spectral.output[0],
+        monte_carlo=rules.variance_monte_carlo.output[0],
+        agreement=rules.check_variance.output[0],
+        crossing=rules.check_crossing.output[0],
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),
@@ -42,7 +42,7 @@ rule paper:
     input:
         figures=rules.figures.input,
         tables=rules.tables.input,
-        values=rules.values.output,
+        values=rules.values.output[0],
         template="paper/paper.typ",
         modules=sources("workflow/scripts/paper/typeset.py"),
     output:

@@ -16,6 +16,7 @@ rule trajectories:
         n=lookup(dpath="trajectories/n", within=config),
         horizon=lookup(dpath="trajectories/horizon", within=config),
         step=lookup(dpath="trajectories/step", within=config),
+        outputs=lookup(dpath="trajectories/outputs", within=config),
         seed=lookup(dpath="seed", within=config),
     log:
         f"{RESULTS}/logs/trajectories/{{model}}.log",

@@ -106,7 +106,7 @@ rule variance_monte_carlo:
             results=RESULTS,
             shard=shards(config["variance"]["monte_carlo"]),
         ),
-        halving=rules.variance_halving.output,
+        halving=rules.variance_halving.output[0],
         modules=sources("workflow/scripts/variance/monte_carlo.py"),
     output:
         ensure(f"{RESULTS}/variance/monte_carlo.nc", non_empty=True),
@@ -123,9 +123,9 @@ rule check_variance:
     message:
         "Check that the three methods agree within their stated errors"
     input:
-        spectral=rules.variance_spectral.output,
-        finite_difference=rules.variance_finite_difference.output,
-        monte_carlo=rules.variance_monte_carlo.output,
+        spectral=rules.variance_spectral.output[0],
+        finite_difference=rules.variance_finite_difference.output[0],
+        monte_carlo=rules.variance_monte_carlo.output[0],
         modules=sources("workflow/scripts/variance/check.py"),
     output:
         ensure(f"{RESULTS}/variance/check.nc", non_empty=True),
@@ -142,10 +142,10 @@ rule figure_2a:
     message:
         "Draw figure 2a"
     input:
-        spectral=rules.variance_spectral.output,
-        finite_difference=rules.variance_finite_difference.output,
-        monte_carlo=rules.variance_monte_carlo.output,
-        check=rules.check_variance.output,
+        spectral=rules.variance_spectral.output[0],
+        finite_difference=rules.variance_finite_difference.output[0],
+        monte_carlo=rules.variance_monte_carlo.output[0],
+        check=rules.check_variance.output[0],
         modules=sources("workflow/scripts/variance/figure_2a.py"),
     output:
         report(

@@ -6,6 +6,7 @@ from pathlib import Path
 import typst
 
 from nonsmooth.errors import ArtifactError
+from nonsmooth.files import whole
 from nonsmooth.jobs import job
 
 
@@ -25,19 +26,20 @@ def compile_paper(template, results, output):
     """
     root = os.path.commonpath([Path.cwd(), Path(results).resolve()])
     folder = "/" + Path(results).resolve().relative_to(root).as_posix()
-    partial = Path(output).with_name(f".{Path(output).name}.partial")
-    try:
-        typst.compile(
-            template,
-            output=str(partial),
-            root=root,
-            format="pdf",
-            ignore_system_fonts=True,
-            sys_inputs={"results": folder},
-        )
-    except typst.TypstError as error:
-        raise ArtifactError(f"{template} does not compile: {error}; mend the template") from None
-    os.replace(partial, output)
+    with whole(output) as partial:
+        try:
+            typst.compile(
+                template,
+                output=str(partial),
+                root=root,
+                format="pdf",
+                ignore_system_fonts=True,
+                sys_inputs={"results": folder},
+            )
+        except typst.TypstError as error:
+            raise ArtifactError(
+                f"{template} does not compile: {error}; mend the template"
+            ) from None
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 """The numbers that the text of the paper quotes, spelt as they stand there."""
 
 import json
-from pathlib import Path
 
 import yaml
 
+from nonsmooth.files import whole
 from nonsmooth.jobs import inputs, job
 
 PRINTED = "paper/printed.yaml"
@@ -85,4 +85,5 @@ def _scientific(value):
 if __name__ == "__main__":
     with job(snakemake.log[0]):
         result = values(snakemake.params.config, **inputs(snakemake))
-        Path(snakemake.output[0]).write_text(json.dumps(result, indent=1), encoding="utf-8")
+        with whole(snakemake.output[0]) as partial:
+            partial.write_text(json.dumps(result, indent=1), encoding="utf-8")

@@ -9,7 +9,7 @@ from nonsmooth.scene import Scene
 from nonsmooth.trajectories import simulate
 
 
-def same_noise(model, potential, damping, n, horizon, step, seed, path):
+def same_noise(model, potential, damping, n, horizon, step, outputs, seed, path):
     """Simulate the oscillator with white noise for each penalization.
 
     Returns
@@ -18,7 +18,7 @@ def same_noise(model, potential, damping, n, horizon, step, seed, path):
         y and x over (n, time); n = inf is the non-smooth limit.
     """
     scene = Scene(model=model, potential=potential, damping=damping, observable="x")
-    times = step * np.arange(1, round(horizon / step) + 1)
+    times = horizon / outputs * np.arange(1, outputs + 1)
     runs = [
         simulate(scene.with_n(k), horizon, step, 1, (seed, path), times=times, keep="paths")
         for k in n

@@ -1,0 +1,69 @@
+"""Scenes reduce themselves to their minimal state and refuse what makes no sense."""
+
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import NonsmoothError
+
+
+@pytest.mark.parametrize(
+    ("scene", "state"),
+    [
+        ({"model": "friction"}, ("y",)),
+        ({"model": "friction", "observable": "x"}, ("y", "x")),
+        ({"model": "friction", "potential": "x**2/2"}, ("y", "x")),
+        ({"model": "friction", "noise": "langevin"}, ("eta", "y")),
+        ({"model": "friction", "noise": "hamiltonian"}, ("zeta", "eta", "y")),
+        ({"model": "elasto_plastic"}, ("y",)),
+        ({"model": "elasto_plastic", "potential": "x**2/2"}, ("y", "x")),
+        ({"model": "elasto_plastic", "observable": "x"}, ("y", "x")),
+        ({"model": "obstacle"}, ("y", "x")),
+        ({"model": "obstacle", "noise": "langevin"}, ("eta", "y", "x")),
+        ({"model": "obstacle", "noise": "hamiltonian"}, ("zeta", "eta", "y", "x")),
+        ({"model": "obstacle", "noise": "hamiltonian", "observable": "eta"}, ("zeta", "eta")),
+    ],
+)
+def test_minimal_state(scene, state):
+    """The state is closed under the drift and contains the observable's variables, no more."""
+    assert ns.Scene(**scene).state == state
+
+
+@pytest.mark.parametrize(
+    ("scene", "offender"),
+    [
+        ({"model": "fricton"}, "did you mean 'friction'"),
+        ({"model": "friction", "noise": "whit"}, "did you mean 'white'"),
+        ({"model": "friction", "n": 0}, "n > 0"),
+        ({"model": "friction", "n": float("nan")}, "n > 0"),
+        ({"model": "friction", "damping": -1}, "damping > 0"),
+        ({"model": "friction", "damping": float("inf")}, "finite damping"),
+        ({"model": "friction", "observable": "eta"}, "eta"),
+        ({"model": "friction", "potential": "y"}, "'y'"),
+        ({"model": "friction", "start": {"z": 1}}, "'z'"),
+    ],
+)
+def test_impossible_scenes_are_refused(scene, offender):
+    """One line that names the offender."""
+    with pytest.raises(NonsmoothError) as error:
+        ns.Scene(**scene)
+    assert offender in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("noise", "offender"),
+    [
+        (lambda: ns.Langevin("-eta**2/2"), "not confining"),
+        (lambda: ns.Langevin("abs(eta)"), "not confining"),
+        (lambda: ns.Langevin("eta**4/4", sigma=0), "sigma > 0"),
+        (lambda: ns.OrnsteinUhlenbeck(theta=-1), "theta > 0"),
+        (lambda: ns.Hamiltonian("eta**2/2 - zeta**2/2", "1"), "does not confine"),
+        (lambda: ns.Hamiltonian("eta**2/2 + zeta**2/2", "-1"), "not positive"),
+        (lambda: ns.KanaiTajimi(stiffness=0), "stiffness > 0"),
+    ],
+)
+def test_impossible_noises_are_refused(noise, offender):
+    """One line that names the offender."""
+    with pytest.raises(NonsmoothError, match=offender) as error:
+        noise()
+    assert "\n" not in str(error.value)
