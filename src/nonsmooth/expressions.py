@@ -59,13 +59,15 @@ def parse(text, variables):
     )
     del interpreter.symtable["print"]
     try:
-        expression = sympy.sympify(interpreter.eval(text, raise_errors=True, show_errors=False))
+        value = interpreter.eval(text, raise_errors=True, show_errors=False)
     except Exception as error:  # asteval re-raises whatever the formula provoked
         reason = " ".join(str(error).split()) or type(error).__name__
         raise ExpressionError(
             f"cannot read the formula {text!r} ({reason}); use the variables "
             f"{', '.join(sorted(names))} and the functions {', '.join(FUNCTIONS)}"
         ) from None
+    # sympify evaluates strings, so it must never see one
+    expression = sympy.sympify(value) if isinstance(value, int | float | sympy.Expr) else None
     if not isinstance(expression, sympy.Expr) or expression.is_extended_real is False:
         raise ExpressionError(f"the formula {text!r} is not a real expression; write arithmetic")
     return expression

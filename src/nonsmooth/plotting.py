@@ -74,8 +74,8 @@ def trajectory(dataset, limits):
     finite = [n for n in dataset["n"].values if n < float("inf")]
     styles = {n: (color, "--", 0.9) for n, color in zip(finite, (SKY, BLUE), strict=False)}
     if finite:
-        styles[finite[-1]] = (BLUE, "-", 1.3)
-    styles[float("inf")] = (ORANGE, "-", 0.6)
+        styles[finite[-1]] = (BLUE, "-", 1.6)
+    styles[float("inf")] = (ORANGE, "-", 0.5)
     time = dataset["time"].values
     for n in dataset["n"].values:
         color, dashes, width = styles[n]

@@ -142,8 +142,9 @@ def assemble(scene, degree):
 def spectrum(scene, degree):
     """Solve the eigenproblem of -A.
 
-    The pencil is solved as M phi = nu (M + K) phi, nu = 1/(1 + lambda): the rounding error is
-    then relative to the slow modes, which carry the answer, and not to the fastest one.
+    The pencil is solved as M phi = nu (M + K/s) phi, nu = 1/(1 + lambda/s), with s = C_b the
+    scale of the slow modes: the rounding error is then relative to them, which carry the
+    answer, and not to the fastest one.
 
     Parameters
     ----------
@@ -155,9 +156,10 @@ def spectrum(scene, degree):
     Spectrum
     """
     nodes, mass, stiffness, observable = assemble(scene, degree)
-    scale = 1 / np.sqrt(np.diag(mass + stiffness))
+    shifted = mass + stiffness / scene.damping
+    scale = 1 / np.sqrt(np.diag(shifted))
     balance = np.outer(scale, scale)
-    nu, vectors = scipy.linalg.eigh(mass * balance, (mass + stiffness) * balance)
+    nu, vectors = scipy.linalg.eigh(mass * balance, shifted * balance)
     keep = nu > 1e-13
     nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * scale[:, None]
     vectors /= np.sqrt(nu)  # normalised in L^2(m)
@@ -165,9 +167,19 @@ def spectrum(scene, degree):
     vectors, start = vectors * np.sign(start[0]), start * np.sign(start[0])  # phi_0 = 1
     product = vectors.T @ observable @ vectors
     product -= product[0, 0] * np.eye(len(nu))
-    rates = 1 / nu - 1
+    rates = scene.damping * (1 / nu - 1)
     rates[0] = 0.0
     return Spectrum(rates, product[0], product, start)
+
+
+def rounding(scene, degree):
+    """Bound on the relative rounding error of all results.
+
+    The stiffness matrix, of size degree^2 / width, is applied to smooth functions, for which its
+    entries cancel; the natural length of the state is C_b^(-1/2).
+    """
+    width = np.min(np.diff(mesh(scene))) * np.sqrt(scene.damping)
+    return np.finfo(float).eps * degree**2 * max(1.0, 1 / width)
 
 
 def asymptotic_variance(scene, degree):

@@ -11,7 +11,6 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 
 _DEGREES = (8, 12, 16, 20, 24)
-_ROUNDING = 64 * np.finfo(float).eps
 
 
 def asymptotic_variance(scene, tol=1e-10):
@@ -22,7 +21,7 @@ def asymptotic_variance(scene, tol=1e-10):
     scene : Scene
         With the one-dimensional state y and white noise.
     tol : float
-        Requested absolute error.
+        Requested relative error.
 
     Returns
     -------
@@ -46,11 +45,16 @@ def asymptotic_variance(scene, tol=1e-10):
         value, error = friction_variance(scene.n, scene.damping)
         method = "closed form"
     else:
-        value, error = _refine(lambda degree: spectral.asymptotic_variance(scene, degree), tol)
-        value, error, method = float(value), float(error), "spectral elements"
-    if error > tol:
+        value, error = _refine(
+            lambda degree: np.array([spectral.asymptotic_variance(scene, degree)]),
+            lambda degree, value: spectral.rounding(scene, degree) * np.abs(value),
+            lambda value: tol * np.abs(value),
+        )
+        value, error, method = float(value[0]), float(error[0]), "spectral elements"
+    if error > tol * abs(value):
         raise ToleranceError(
-            f"gamma^2 = {value:.16g} with an error of {error:.1e}, above tol = {tol:g}; loosen tol"
+            f"gamma^2 = {value:.16g} has an error of {error:.1e}, above tol = {tol:g} relative; "
+            "loosen tol"
         )
     return Estimate(value, error, method, time.perf_counter() - began)
 
@@ -84,7 +88,11 @@ def variance(scene, times, tol=1e-9):
         raise SceneError("the times of the variance must not be negative; remove those that are")
     scale = tol * np.where(times > 0, times, 1.0)
     (w, v), (w_error, v_error) = _refine(
-        lambda degree: np.array(spectral.moments(scene, times, degree)), scale
+        lambda degree: np.array(spectral.moments(scene, times, degree)),
+        # w is the difference of terms as large as the standard deviation
+        lambda degree, wv: spectral.rounding(scene, degree)
+        * np.array([np.abs(wv[0]) + np.sqrt(np.abs(wv[1])), np.abs(wv[1])]),
+        lambda wv: np.array([np.full_like(times, np.inf), scale]),
     )
     if np.any(v_error > scale):
         raise ToleranceError(
@@ -100,16 +108,16 @@ def variance(scene, times, tol=1e-9):
     )
 
 
-def _refine(solve, tol):
-    """Raise the polynomial degree until two solutions agree to `tol`; return the last, its error.
+def _refine(solve, rounding, allowed):
+    """Raise the polynomial degree until two solutions agree; return the last and its error.
 
     The difference is the error of the coarser one, which convergence in the degree makes far
-    larger than that of the finer one.
+    larger than that of the finer one; rounding is added.
     """
     solution = solve(_DEGREES[0])
     for degree in _DEGREES[1:]:
         coarser, solution = solution, solve(degree)
-        error = np.abs(solution - coarser) + _ROUNDING * np.abs(solution)
-        if np.all(error <= tol):
+        error = np.abs(solution - coarser) + rounding(degree, solution)
+        if np.all(error <= allowed(solution)):
             break
     return solution, error

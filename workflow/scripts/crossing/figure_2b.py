@@ -6,39 +6,47 @@ import numpy as np
 from nonsmooth.plotting import BLACK, BLUE, GREEN, ORANGE, SKY, TEXT_WIDTH, draw
 from nonsmooth.tables import sorted_by
 
+LOOKS = [(GREEN, (0, (1, 2))), (SKY, (0, (3, 1, 1, 1, 1, 1))), (BLUE, "-."), (BLACK, "--")]
+
 
 def crossing(monte_carlo, asymptotic, check):
-    """Draw W(sqrt(p) b, p T) with 95 % bands, and W_star(b / gamma, T).
+    """Draw W(sqrt(p) b, p T) and W_star(b / gamma, T) above their differences, with 95 % bands.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure, axis = plt.subplots(figsize=(0.75 * TEXT_WIDTH, 3.2))
-    looks = [(GREEN, (0, (1, 2))), (SKY, (0, (1, 1))), (BLUE, "-."), (BLACK, "--")]
+    figure, (top, bottom) = plt.subplots(
+        2, 1, figsize=(0.75 * TEXT_WIDTH, 4.4), sharex=True, height_ratios=[2, 1]
+    )
+    limit = _from_zero(asymptotic["probability"])
     for k, run in enumerate(sorted_by("p", monte_carlo)):
-        color, dashes = looks[k % len(looks)]
-        horizon = np.concatenate([[0.0], run["horizon"].values])
-        curve = {
-            name: np.concatenate([[0.0], run[name].values])
-            for name in ("probability", "lower", "upper")
-        }
-        axis.fill_between(
-            horizon, curve["lower"], curve["upper"], color=color, alpha=0.25, linewidth=0
+        color, dashes = LOOKS[k % len(LOOKS)]
+        horizon = _from_zero(run["horizon"])
+        probability, lower, upper = (
+            _from_zero(run[name]) for name in ("probability", "lower", "upper")
         )
-        axis.plot(
-            horizon,
-            curve["probability"],
-            color=color,
-            linestyle=dashes,
-            label=f"$p = {float(run['p']):g}$",
-        )
-    horizon = np.concatenate([[0.0], asymptotic["horizon"].values])
-    limit = np.concatenate([[0.0], asymptotic["probability"].values])
-    axis.plot(horizon, limit, color=ORANGE, label=r"$W_\star(b/\gamma, T)$", zorder=1)
-    axis.set(xlabel="$T$", ylabel=r"$W(\sqrt{p}\,b,\, pT)$", xlim=(0, horizon[-1]), ylim=(0, 1))
-    axis.legend(loc="lower right")
+        for axis, shift in ((top, 0.0), (bottom, limit)):
+            axis.fill_between(
+                horizon, lower - shift, upper - shift, color=color, alpha=0.3, linewidth=0
+            )
+            axis.plot(
+                horizon,
+                probability - shift,
+                color=color,
+                linestyle=dashes,
+                label=f"$p = {float(run['p']):g}$",
+            )
+    top.plot(horizon, limit, color=ORANGE, label=r"$W_\star(b/\gamma, T)$", zorder=1)
+    bottom.axhline(0, color=ORANGE, zorder=1)
+    top.set(ylabel=r"$W(\sqrt{p}\,b,\, pT)$", ylim=(0, 1))
+    top.legend(loc="lower right")
+    bottom.set(xlabel="$T$", ylabel=r"$W - W_\star$", xlim=(0, horizon[-1]))
     return figure
+
+
+def _from_zero(values):
+    return np.concatenate([[0.0], values])
 
 
 if __name__ == "__main__":

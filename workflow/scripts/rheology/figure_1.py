@@ -103,7 +103,7 @@ def rheology():
     spring(axes[1], -1, 1, 0)
     slider(axes[1], -1, 1, -0.5)
     spring(axes[2], -1, 1, -0.5)
-    wall(axes[2], 1.25, side=1)
+    wall(axes[2], 1.25)
     wall(axes[2], 2.03, side=1)
     return figure
 

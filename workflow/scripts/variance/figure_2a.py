@@ -57,7 +57,7 @@ def growth(spectral, finite_difference, monte_carlo, check):
     )
     bottom.axhline(0, color=ORANGE)
     bottom.set(xlabel=r"$\tau$", ylabel="deviation $\\times\\,10^4$", xlim=(tau[0], tau[-1]))
-    bottom.legend(loc="lower left")
+    bottom.legend(loc="upper left")
     return figure
 
 

@@ -1,0 +1,83 @@
+"""Shared fixtures: copies of the repository in which the workflow can run and be disturbed."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TRACKED = (
+    "Snakefile",
+    "config.yaml",
+    "config",
+    "workflow",
+    "src",
+    "paper",
+    "environment-lock.txt",
+    "pyproject.toml",
+)
+
+
+class Repository:
+    """A copy of the repository and the snakemake of this environment."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def snakemake(self, *arguments):
+        """Run snakemake with the smoke configuration; return the finished process."""
+        return subprocess.run(
+            [sys.executable, "-m", "snakemake", "--configfile", "config/smoke.yaml", *arguments],
+            cwd=self.folder,
+            env=os.environ | {"PYTHONPATH": str(self.folder / "src"), "COLUMNS": "200"},
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+
+    def jobs(self, *targets):
+        """Dry-run; return the rules that would run and how often."""
+        run = self.snakemake("--cores", "1", "--dry-run", "--quiet", "all", "--", *targets)
+        assert run.returncode == 0, run.stderr
+        run = self.snakemake("--cores", "1", "--dry-run", "--", *targets)
+        counts, inside = {}, False
+        for line in run.stdout.splitlines() + run.stderr.splitlines():
+            words = line.split()
+            if words[:2] == ["job", "count"]:
+                inside = True
+            elif inside and len(words) == 2 and words[1].isdigit():
+                if words[0] == "total":
+                    break
+                counts[words[0]] = int(words[1])
+        counts.pop("all", None)
+        return counts
+
+
+def copy_repository(destination, *extra):
+    """Copy what git tracks of the workflow, and more where it is asked for."""
+    for name in (*TRACKED, *extra):
+        source = ROOT / name if name in TRACKED else Path(name)
+        if source.is_dir():
+            skip = shutil.ignore_patterns("__pycache__", "*.pdf", "*.egg-info")
+            shutil.copytree(source, destination / name, ignore=skip)
+        else:
+            shutil.copy2(source, destination / name)
+    return Repository(destination)
+
+
+@pytest.fixture
+def repository(tmp_path):
+    """Return an untouched copy of the repository."""
+    return copy_repository(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def smoke_run(tmp_path_factory):
+    """Return a repository in which the whole workflow has run at reduced sizes."""
+    repository = copy_repository(tmp_path_factory.mktemp("smoke"))
+    run = repository.snakemake("--cores", "2")
+    assert run.returncode == 0, run.stderr[-4000:]
+    return repository

@@ -1,0 +1,105 @@
+"""A bad configuration costs one line that names the key and the cure."""
+
+import copy
+from pathlib import Path
+
+import pytest
+import yaml
+
+from nonsmooth.configuration import validate
+from nonsmooth.errors import NonsmoothError
+from workflow.experiment import SCHEMA, check, label, shards
+
+ROOT = Path(__file__).parents[1]
+CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())
+SMOKE = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text())
+
+
+def changed(path, value):
+    """Return the configuration with one key set, given as a dotted path."""
+    config = copy.deepcopy(CONFIG)
+    *parents, last = path.split(".")
+    place = config
+    for key in parents:
+        place = place[key]
+    place[last] = value
+    return config
+
+
+def leaves(schema, path=()):
+    """Yield every property of the schema with its path."""
+    for key, value in schema.get("properties", {}).items():
+        yield (*path, key), value
+        yield from leaves(value, (*path, key))
+
+
+def test_the_paper_configuration_is_valid():
+    """As it stands in the repository."""
+    check(CONFIG)
+
+
+def test_every_key_is_described():
+    """In the schema, directly or through a reference."""
+    schema = yaml.safe_load(SCHEMA.read_text())
+    definitions = schema["$defs"]
+    for path, value in [*leaves(schema), *leaves({"properties": definitions})]:
+        if path[0] == "positive":
+            continue
+        reference = definitions.get(value.get("$ref", "").rpartition("/")[2], {})
+        assert "description" in value or "description" in reference, ".".join(path)
+
+
+def test_the_smoke_configuration_only_overrides():
+    """Every key of config/smoke.yaml exists in config.yaml."""
+
+    def compare(small, large):
+        for key, value in small.items():
+            assert key in large
+            if isinstance(value, dict):
+                compare(value, large[key])
+
+    compare(SMOKE, CONFIG)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        ("sede", 1, "unknown key 'sede'; did you mean 'seed'?"),
+        ("crossing.treshold", 1, "unknown key 'treshold' in 'crossing'; did you mean 'threshold'?"),
+        ("variance.alhpa", 1, "unknown key 'alhpa' in 'variance'"),
+        ("crossing.threshold", -1, "'crossing.threshold' = -1: must be greater than 0"),
+        ("crossing.p", [], "'crossing.p'"),
+        ("crossing.paths", 1.5, "'crossing.paths' = 1.5: must be of type integer"),
+        ("crossing.shard", 7000, "'crossing.shard'"),
+        ("seed", "x", "'seed' = 'x': must be of type integer"),
+        ("variance.scene.model", "fricton", "must be one of elasto_plastic, friction, obstacle"),
+        ("variance.scene.potential", "x**2", "choose friction with potential '0'"),
+        ("variance.scene.potential", "import os", "cannot read the formula"),
+        ("variance.scene.observable", "q", "cannot read the formula"),
+        ("crossing.scene.model", "obstacle", "crossing.scene has the state (y, x)"),
+        ("trajectories.models.friction.damping", 0, "must be greater than 0"),
+        ("trajectories.models.friction.potential", "x +", "cannot read the formula"),
+        ("outputs.results", "config.yaml/results", "cannot write into 'config.yaml'"),
+    ],
+)
+def test_bad_keys(path, value, message, monkeypatch):
+    """The message names the key; it is one line."""
+    monkeypatch.chdir(ROOT)
+    with pytest.raises(NonsmoothError) as error:
+        check(changed(path, value))
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_missing_key():
+    """The key and where it is missing."""
+    config = copy.deepcopy(CONFIG)
+    del config["crossing"]["p"]
+    with pytest.raises(NonsmoothError, match="'p' is missing in 'crossing'"):
+        validate(config, yaml.safe_load(SCHEMA.read_text()))
+
+
+def test_labels_and_shards():
+    """Numbers as they stand in file names, and the last shard may be smaller."""
+    assert [label(x) for x in (2, 0.5, 1e6, float("inf"))] == ["2", "0.5", "1e+06", "inf"]
+    assert shards({"paths": 12_000, "shard": 5_000}) == [0, 1, 2]

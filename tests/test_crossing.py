@@ -1,0 +1,101 @@
+"""Threshold crossing: published values, exact intervals, the limit, the step's bias."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import nonsmooth as ns
+from nonsmooth.crossing import first_passage_counts, first_passage_shift, proportion
+from nonsmooth.errors import SceneError
+from nonsmooth.streams import BLOCK
+
+SCENE = ns.Scene("friction", n=100)
+HORIZONS = np.linspace(0, 2, 11)[1:]
+FALSE_ALARM = 1e-5
+
+
+@pytest.mark.parametrize(
+    ("p", "value", "paths"), [(1, 0.1606775, 50_000), (10, 0.3674251, 20_000), (100, 0.4595991, 5_000)]
+)
+def test_published_values_at_T_2(p, value, paths):  # noqa: N802
+    """W(sqrt(p) 0.6, 2 p) known from a Laplace-transform computation, n = 100."""
+    run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=paths, seed=3)
+    estimate, error = run["probability"][-1], run["probability_error"][-1]
+    # bias of h = 0.02: 1.2e-3 of the growth rate times dW/dlog T < 0.45
+    allowed = stats.norm.isf(FALSE_ALARM / 2) * error + 6e-4
+    assert abs(float(estimate) - value) < allowed
+
+
+def test_number_of_threads_and_shards_changes_no_count():
+    """One run of two blocks is the sum of two runs of one block."""
+    arguments = (SCENE, 0.6, HORIZONS, 1.0, 0.05)
+    whole = first_passage_counts(*arguments, 2 * BLOCK, 5, threads=2)
+    parts = [first_passage_counts(*arguments, BLOCK, 5, f, threads=1) for f in (0, BLOCK)]
+    assert np.array_equal(whole, sum(parts))
+
+
+def test_thresholds_out_of_reach_and_within_every_reach():
+    """No path integrates to 50 in two units of time; every path to a tiny threshold."""
+    none = first_passage_counts(SCENE, 50.0, HORIZONS, 1.0, 0.05, 500, 1)
+    every = first_passage_counts(SCENE, 1e-9, HORIZONS, 1.0, 0.05, 500, 1)
+    assert none.sum() == 0
+    assert every.sum() == every[0] == 500
+
+
+@pytest.mark.parametrize(("k", "trials"), [(0, 50), (1, 50), (25, 50), (50, 50), (3, 100_000)])
+def test_interval_is_clopper_pearson(k, trials):
+    """Against scipy's exact test."""
+    estimate, lower, upper = proportion(k, trials)
+    exact = stats.binomtest(k, trials).proportion_ci(0.95, method="exact")
+    assert float(estimate) == k / trials
+    # scipy's root finder stops at 2e-12
+    assert np.allclose([lower, upper], [exact.low, exact.high], rtol=1e-11, atol=4e-12)
+
+
+def test_asymptotic_method_is_the_limit():
+    """W_star with gamma^2 in closed form; its error is that of gamma^2."""
+    run = ns.crossing_probability(SCENE, 0.6, [2.0], method="asymptotic")
+    assert float(run["probability"][0]) == pytest.approx(0.5045888, abs=5e-8)
+    assert float(run["probability_error"][0]) < 1e-13
+
+
+def test_distance_to_the_limit_falls_with_p():
+    """From 0.34 over 0.14 to 0.045 at T = 2, p = 1, 10, 100 (order p^-1/2)."""
+    limit = ns.crossing_probability(SCENE, 0.6, [2.0], method="asymptotic")["probability"][0]
+    for p, distance in ((1, 0.344), (10, 0.137), (100, 0.0450)):
+        run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=5_000, seed=4)
+        error = stats.norm.isf(FALSE_ALARM / 2) * run["probability_error"][-1]
+        assert abs(float(limit - run["probability"][-1]) - distance) < error + 1e-3
+
+
+def test_halving_shifts_the_passage_times_by_the_bias_of_the_variance():
+    """Mean log time shifts by minus the relative bias of the growth rate (h = 0.2: -0.023)."""
+    count, total, square = first_passage_shift(SCENE, 0.6, 20.0, 10.0, 0.2, 20_000, 6)
+    mean = total / count
+    error = np.sqrt((square / count - mean**2) / count)
+    assert count > 19_900
+    # the variance's halving at the same step, from independent samples
+    from nonsmooth.trajectories import central_moments, step_bias
+
+    change = central_moments(step_bias(SCENE, 20.0, 0.2, 50_000, 7, times=[20.0]))
+    v = float(ns.variance(SCENE, [20.0])["v"][0])
+    relative, relative_error = change["mean"][0] / v, change["mean_error"][0] / v
+    # finite p: passage times are those of a Brownian motion up to p^-1/2 = 0.32
+    allowed = stats.norm.isf(FALSE_ALARM / 2) * np.hypot(error, relative_error)
+    assert abs(mean + relative) < allowed + 0.32 * abs(relative)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "cure"),
+    [
+        ({"threshold": 0.0}, "threshold > 0"),
+        ({"p": -1.0}, "p > 0"),
+        ({"method": "montecarlo"}, "monte_carlo"),
+        ({"horizons": [1.0, 1.5]}, "numpy.linspace"),
+    ],
+)
+def test_bad_requests_are_refused(arguments, cure):
+    """One line with the cure."""
+    defaults = {"threshold": 0.6, "horizons": HORIZONS, "p": 1.0, "paths": 100}
+    with pytest.raises(SceneError, match=cure):
+        ns.crossing_probability(SCENE, **(defaults | arguments))

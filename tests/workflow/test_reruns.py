@@ -1,0 +1,122 @@
+"""What a change makes run again, and what it does not: dry runs after a whole run."""
+
+import shutil
+
+import pytest
+
+from conftest import Repository
+
+
+@pytest.fixture
+def finished(smoke_run, tmp_path):
+    """Return a copy of the finished smoke run, to be disturbed."""
+    folder = tmp_path / "copy"
+    shutil.copytree(smoke_run.folder, folder, symlinks=True)
+    return Repository(folder)
+
+
+def edit(path, old, new):
+    """Replace text in a file."""
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def test_touching_everything_reruns_nothing(finished):
+    """Inputs are compared by content."""
+    for path in [*finished.folder.glob("src/**/*.py"), *finished.folder.glob("workflow/**/*.py")]:
+        path.touch()
+    assert finished.jobs() == {}
+
+
+def test_a_plotting_script_reruns_its_figure_and_the_paper(finished):
+    """Nothing is recomputed."""
+    script = finished.folder / "workflow/scripts/crossing/figure_2b.py"
+    edit(script, 'loc="lower right"', 'loc="center right"')
+    assert finished.jobs() == {"figure_2b": 1, "paper": 1}
+
+
+def test_a_new_n_is_solved_alone(finished):
+    """Adding an n to the table's list."""
+    edit(finished.folder / "config/smoke.yaml", "n: [2, 100, .inf]\n  finite", "n: [2, 7, 100, .inf]\n  finite")
+    assert finished.jobs() == {
+        "convergence_spectral": 1,
+        "convergence_finite_difference": 1,
+        "table_4": 1,
+        "paper": 1,
+    }
+
+
+def test_the_threshold_reruns_the_crossings_only(finished):
+    """Changing b."""
+    edit(finished.folder / "config.yaml", "threshold: 0.6", "threshold: 0.7")
+    jobs = finished.jobs()
+    assert {name for name in jobs if name.startswith("crossing")} == {
+        "crossing_shard",
+        "crossing_halving",
+        "crossing_monte_carlo",
+        "crossing_asymptotic",
+    }
+    rest = {name for name in jobs if not name.startswith("crossing")}
+    assert rest == {"check_crossing", "figure_2b", "table_time_step", "values", "paper"}
+
+
+def test_more_paths_run_new_shards_only(finished):
+    """The old shards stay as they are."""
+    edit(finished.folder / "config/smoke.yaml", "paths: 20_000, shard", "paths: 30_000, shard")
+    jobs = finished.jobs()
+    assert jobs["variance_shard"] == 1
+    assert "crossing_shard" not in jobs
+
+
+def test_a_module_reruns_exactly_the_rules_that_use_it(finished):
+    """finite_difference.py is imported by two compute scripts; its results feed the rest."""
+    with open(finished.folder / "src/nonsmooth/finite_difference.py", "a") as file:
+        file.write("# changed\n")
+    jobs = finished.jobs()
+    assert jobs == {
+        "variance_finite_difference": 1,
+        "convergence_finite_difference": 2,
+        "check_variance": 1,
+        "figure_2a": 1,
+        "table_4": 1,
+        "values": 1,
+        "paper": 1,
+    }
+
+
+def test_a_module_is_followed_through_other_modules(finished):
+    """flows.py is imported by the splitting only, which every simulation uses."""
+    with open(finished.folder / "src/nonsmooth/flows.py", "a") as file:
+        file.write("# changed\n")
+    jobs = finished.jobs()
+    simulations = {"trajectories", "variance_shard", "variance_halving", "crossing_shard"}
+    assert simulations <= jobs.keys()
+    untouched = {"variance_finite_difference", "convergence_finite_difference", "table_1", "figure_1"}
+    assert not untouched & jobs.keys()
+
+
+def test_the_template_reruns_the_paper_only(finished):
+    """Changing a sentence."""
+    edit(finished.folder / "paper/paper.typ", "= Trajectories", "= Some trajectories")
+    assert finished.jobs() == {"paper": 1}
+
+
+@pytest.mark.parametrize(
+    "target",
+    [
+        *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5")),
+        *(f"table_{k}" for k in range(1, 5)),
+        "figures",
+        "tables",
+        "paper",
+    ],
+)
+def test_named_targets(repository, target):
+    """Each exists and asks for its own work."""
+    jobs = repository.jobs(target)
+    assert target in jobs
+    if target in {"figure_1", "table_1", "table_2", "table_3"}:
+        assert jobs == {target: 1}
+    if target == "figure_3":
+        assert jobs == {"trajectories": 1, "figure_3": 1}

@@ -1,0 +1,118 @@
+"""The whole workflow at reduced sizes: every rule, every figure and table, the same bytes."""
+
+import json
+import re
+import subprocess
+import sys
+
+import pandas as pd
+import pytest
+import typst
+
+from nonsmooth import artifact
+
+RESULTS = "results/smoke"
+FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5"]
+TABLES = ["table_1", "table_2", "table_3", "table_4", "table_time_step"]
+
+
+def test_every_figure_and_table_is_there(smoke_run):
+    """In all their formats, and the paper."""
+    results = smoke_run.folder / RESULTS
+    for name in FIGURES:
+        assert (results / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
+        assert (results / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    for name in TABLES:
+        assert len(pd.read_csv(results / "tables" / f"{name}.csv")) >= 1
+        tex = (results / "tables" / f"{name}.tex").read_text()
+        assert tex.startswith(r"\begin{tabular}")
+        assert r"\toprule" in tex
+        assert r"\bottomrule" in tex
+    assert (results / "paper.pdf").read_bytes().startswith(b"%PDF")
+    assert not list(results.rglob(".*partial*"))
+
+
+def test_every_artifact_is_described(smoke_run):
+    """Units, long names, errors as ancillary variables, provenance; no clock time."""
+    paths = sorted((smoke_run.folder / RESULTS).rglob("*.nc"))
+    assert len(paths) > 20
+    for path in paths:
+        data = artifact.read(path)
+        assert "lock sha256" in data.attrs["history"]
+        assert not re.search(r"20\d\d-\d\d-\d\d", str(data.attrs))
+        for name, variable in data.variables.items():
+            assert {"units", "long_name"} <= variable.attrs.keys(), (path, name)
+
+
+def test_no_number_of_the_paper_is_typed():
+    """The template holds no decimal number outside of lengths, sizes and section markup."""
+    template = (pytest.importorskip("conftest").ROOT / "paper" / "paper.typ").read_text()
+    body = template[template.index("#align(center)") :]
+    stripped = re.sub(r"\d+(\.\d+)?(pt|cm|em|%)", "", body)
+    assert not re.search(r"\d+\.\d+", stripped)
+
+
+def test_the_numbers_of_the_text_come_from_artifacts(smoke_run):
+    """gamma^2 in the text is the spectral artifact's."""
+    results = smoke_run.folder / RESULTS
+    values = json.loads((results / "paper" / "values.json").read_text())
+    gamma2 = float(artifact.read(results / "variance" / "spectral.nc")["gamma2"])
+    assert float(values["variance"]["gamma2"]) == pytest.approx(gamma2, abs=1e-15)
+
+
+def test_table_4_has_the_printed_values_beside_ours(smoke_run):
+    """And ours rounds or truncates to the printed ones."""
+    table = pd.read_csv(smoke_run.folder / RESULTS / "tables" / "table_4.csv").set_index("n")
+    assert table.loc[2.0, "printed"] == 0.174466
+    known = table["printed"].notna()
+    assert (abs(table["printed"] - table["growth"])[known] < 1.2e-6).all()
+    off = abs(table["finite_difference"] - table["growth"])[known]
+    assert (off <= table["finite_difference_error"][known]).all()
+
+
+def test_tables_are_valid_typst(smoke_run, tmp_path):
+    """Each compiles on its own."""
+    for name in TABLES:
+        source = smoke_run.folder / RESULTS / "tables" / f"{name}.typ"
+        assert typst.compile(source.read_bytes()).startswith(b"%PDF")
+
+
+def test_one_core_gives_the_same_bytes_as_two(smoke_run):
+    """All artifacts that hold random numbers, figures and tables, recomputed with one core."""
+    elsewhere = "results/one_core"
+    run = smoke_run.snakemake(
+        "--cores", "1", "--config", f"outputs={{results: {elsewhere}, paper: {elsewhere}/paper.pdf}}"
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr[-3000:]
+    first, second = smoke_run.folder / RESULTS, smoke_run.folder / elsewhere
+    compared = 0
+    for path in sorted(first.rglob("*")):
+        if path.suffix in {".nc", ".png", ".pdf", ".csv", ".tex", ".typ", ".json"}:
+            twin = second / path.relative_to(first)
+            assert twin.read_bytes() == path.read_bytes(), path.name
+            compared += 1
+    assert compared > 50
+
+
+def test_second_run_has_nothing_to_do(smoke_run):
+    """And says so."""
+    run = smoke_run.snakemake("--cores", "2")
+    assert run.returncode == 0
+    assert "Nothing to be done" in run.stdout + run.stderr
+
+
+def test_progress_is_visible(repository):
+    """What runs, and how far it is."""
+    run = repository.snakemake("--cores", "1", "--", "figure_1")
+    output = run.stdout + run.stderr
+    assert "Draw figure 1, the rheological models" in output
+    assert "1 of 1 steps (100%) done" in output
+
+
+def test_lint():
+    """`snakemake --lint` has nothing to say."""
+    root = pytest.importorskip("conftest").ROOT
+    run = subprocess.run(
+        [sys.executable, "-m", "snakemake", "--lint"], cwd=root, capture_output=True, text=True
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
