@@ -2,11 +2,9 @@
 # This file validates the configuration, includes the rules and names the targets.
 import sys
 
-sys.path.insert(0, f"{workflow.basedir}/src")
-
-from nonsmooth.errors import NonsmoothError
 from workflow.dependencies import sources
-from workflow.experiment import check, finite, label, shards
+from workflow.experiment import check, finite, label, part, shards
+from nonsmooth.errors import NonsmoothError
 
 
 configfile: "config.yaml"
@@ -19,9 +17,6 @@ except NonsmoothError as error:
 
 RESULTS = config["outputs"]["results"]
 PAPER = config["outputs"]["paper"]
-
-
-container: None
 
 
 wildcard_constraints:

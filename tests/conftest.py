@@ -1,6 +1,5 @@
 """Shared fixtures: copies of the repository in which the workflow can run and be disturbed."""
 
-import os
 import shutil
 import subprocess
 import sys
@@ -32,7 +31,6 @@ class Repository:
         return subprocess.run(
             [sys.executable, "-m", "snakemake", "--configfile", "config/smoke.yaml", *arguments],
             cwd=self.folder,
-            env=os.environ | {"PYTHONPATH": str(self.folder / "src"), "COLUMNS": "200"},
             capture_output=True,
             text=True,
             timeout=300,
@@ -40,9 +38,8 @@ class Repository:
 
     def jobs(self, *targets):
         """Dry-run; return the rules that would run and how often."""
-        run = self.snakemake("--cores", "1", "--dry-run", "--quiet", "all", "--", *targets)
-        assert run.returncode == 0, run.stderr
         run = self.snakemake("--cores", "1", "--dry-run", "--", *targets)
+        assert run.returncode == 0, run.stderr
         counts, inside = {}, False
         for line in run.stdout.splitlines() + run.stderr.splitlines():
             words = line.split()

@@ -9,7 +9,7 @@ from nonsmooth.errors import ArtifactError
 
 
 def example(values=(1.0, 2.0)):
-    """A small described dataset."""
+    """Return a small described dataset."""
     return artifact.dataset(
         "An example",
         "two numbers",

@@ -1,5 +1,7 @@
 """gamma_n^2 in closed form against published values, brute quadrature and its limits."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -7,9 +9,7 @@ from scipy.integrate import quad
 from nonsmooth.closed_form import friction_variance
 
 
-@pytest.mark.parametrize(
-    ("n", "value"), [(100, 0.137696412899501), (np.inf, 0.137679199643661)]
-)
+@pytest.mark.parametrize(("n", "value"), [(100, 0.137696412899501), (np.inf, 0.137679199643661)])
 def test_published_values(n, value):
     """Two values known to fifteen digits."""
     assert friction_variance(n)[0] == pytest.approx(value, abs=2e-15)
@@ -22,9 +22,7 @@ def test_against_nested_quadrature(n, damping):
 
     def density(y):
         a = abs(y)
-        return np.exp(
-            -damping * a**2 - (n * a**2 if a < knot else 2 * a - knot)
-        )
+        return np.exp(-damping * a**2 - (n * a**2 if a < knot else 2 * a - knot))
 
     end = 7 / np.sqrt(damping) + knot
 
@@ -32,13 +30,13 @@ def test_against_nested_quadrature(n, damping):
         pieces = [y, knot, end] if y < knot else [y, end]
         mass = sum(
             quad(lambda s: s * density(s), p, q, epsrel=1e-12, epsabs=0)[0]
-            for p, q in zip(pieces[:-1], pieces[1:], strict=True)
+            for p, q in pairwise(pieces)
         )
         return 2 * mass / density(y)
 
     pieces = [0.0, knot, end] if knot else [0.0, end]
     square, mass = (
-        sum(quad(f, p, q, epsrel=1e-9)[0] for p, q in zip(pieces[:-1], pieces[1:], strict=True))
+        sum(quad(f, p, q, epsrel=1e-9)[0] for p, q in pairwise(pieces))
         for f in (lambda y: slope(y) ** 2 * density(y), density)
     )
     assert friction_variance(n, damping)[0] == pytest.approx(square / mass, rel=1e-8)

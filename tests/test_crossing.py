@@ -15,9 +15,10 @@ FALSE_ALARM = 1e-5
 
 
 @pytest.mark.parametrize(
-    ("p", "value", "paths"), [(1, 0.1606775, 50_000), (10, 0.3674251, 20_000), (100, 0.4595991, 5_000)]
+    ("p", "value", "paths"),
+    [(1, 0.1606775, 50_000), (10, 0.3674251, 20_000), (100, 0.4595991, 5_000)],
 )
-def test_published_values_at_T_2(p, value, paths):  # noqa: N802
+def test_published_values_at_T_2(p, value, paths):
     """W(sqrt(p) 0.6, 2 p) known from a Laplace-transform computation, n = 100."""
     run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=paths, seed=3)
     estimate, error = run["probability"][-1], run["probability_error"][-1]

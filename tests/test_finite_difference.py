@@ -14,7 +14,7 @@ HALF_WIDTH = 6.0
 
 @pytest.fixture(scope="module")
 def reference():
-    """v by spectral elements, error below 1e-9."""
+    """V by spectral elements, error below 1e-9."""
     return ns.variance(SCENE, TAU)["v"].values
 
 

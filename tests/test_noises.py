@@ -12,7 +12,7 @@ FALSE_ALARM = 1e-4
 
 
 def samples(noise, horizon, step, paths, seed):
-    """Final values of the noise's variables from the origin."""
+    """Return final values of the noise's variables from the origin."""
     scene = ns.Scene("obstacle", noise, observable="eta")
     run = simulate(scene, horizon, step, paths, seed, times=[horizon], keep="paths")
     return {name: run[name].values[:, -1] for name in scene.state}

@@ -53,20 +53,16 @@ def test_streams_differ_between_blocks_seeds_and_scenes():
     ],
 )
 def test_penalised_paths_converge_to_the_limit_on_the_same_noise(model, rate, n, step):
-    """sup |X^n - X^inf|, for friction sup |Y^n - Y^inf|, falls at the rates known empirically.
+    """Sup |X^n - X^inf|, for friction sup |Y^n - Y^inf|, falls at the rates known empirically.
 
     To within 0.25, as the mean over 60 paths of a skewed quantity allows. Friction needs
     steps well below n^(-2), the time in which the noise crosses the kink; beyond, the splitting's
     own difference is what one sees.
     """
     scene = ns.Scene(model, potential="0", observable="x")
-    runs = {
-        k: simulate(scene.with_n(k), 3.0, step, 60, 8, keep="paths") for k in (*n, np.inf)
-    }
+    runs = {k: simulate(scene.with_n(k), 3.0, step, 60, 8, keep="paths") for k in (*n, np.inf)}
     name = "y" if model == "friction" else "x"
-    error = [
-        np.mean(np.max(np.abs(runs[k][name] - runs[np.inf][name]).values, axis=1)) for k in n
-    ]
+    error = [np.mean(np.max(np.abs(runs[k][name] - runs[np.inf][name]).values, axis=1)) for k in n]
     slope = np.log(error[0] / error[1]) / np.log(n[1] / n[0])
     assert slope > rate - 0.25
 
@@ -94,7 +90,7 @@ def test_obstacle_has_the_gibbs_law_with_twice_the_damping(n):
 
 @pytest.mark.parametrize("n", [2, 100, 1e6, np.inf])
 def test_monte_carlo_agrees_with_spectral_elements(n):
-    """v within z standard errors plus the step's bias, jointly over the times."""
+    """V within z standard errors plus the step's bias, jointly over the times."""
     scene, tau = ns.Scene("friction", n=n), np.array([0.1, 1.0, 5.0])
     sample = central_moments(simulate(scene, 5.0, 0.02, 40_000, 2, times=tau))
     exact = ns.variance(scene, tau, tol=1e-6)["v"].values
@@ -148,7 +144,7 @@ def test_forcing_balance_for_colored_noise(model, potential, n, noise):
 @pytest.mark.parametrize("model", ["elasto_plastic", "friction", "obstacle"])
 @pytest.mark.parametrize("noise", ["white", "langevin", "hamiltonian"])
 def test_stable_for_every_stiffness(model, noise):
-    """n = 1e6 with h = 0.05: moments stay those of a confined oscillator."""
+    """N = 1e6 with h = 0.05: moments stay those of a confined oscillator."""
     scene = ns.Scene(model, noise, n=1e6, potential="x**2/2", observable="x")
     run = simulate(scene, 50.0, 0.05, 400, 7, times=[50.0], keep="paths")
     assert np.all(np.isfinite(run["x"]))
@@ -190,5 +186,5 @@ def test_time_grids():
 def test_bad_requests_are_refused(arguments):
     """One line naming the parameter."""
     defaults = {"horizon": 3.0, "step": 0.1, "paths": 10, "seed": 1}
-    with pytest.raises(SceneError, match="choose|sort"):
+    with pytest.raises(SceneError, match=r"choose|sort"):
         simulate(FRICTION, **(defaults | arguments))

@@ -1,7 +1,7 @@
 """Which source files a script depends on: what Snakemake cannot see for itself."""
 
 import ast
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import grimp
@@ -14,7 +14,7 @@ def _graph():
     return grimp.build_graph(PACKAGE, cache_dir=None)
 
 
-@lru_cache(maxsize=None)
+@cache
 def sources(script):
     """List the modules of the package that a script imports, directly or through others.
 

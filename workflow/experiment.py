@@ -48,8 +48,14 @@ def label(number):
 
 
 def shards(topic):
-    """Indices of the shards of a Monte Carlo section of the configuration."""
+    """List the shards of a Monte Carlo section of the configuration."""
     return list(range(ceil(topic["paths"] / topic["shard"])))
+
+
+def part(topic, shard):
+    """First path of a shard and number of its paths; the other shards do not enter."""
+    first = int(shard) * topic["shard"]
+    return first, min(topic["shard"], topic["paths"] - first)
 
 
 def finite(numbers):

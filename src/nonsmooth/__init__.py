@@ -18,4 +18,3 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "variance": ["asymptotic_variance", "variance"],
     },
 )
-

@@ -7,7 +7,7 @@ _TERMS = np.arange(12)
 _SWITCH = 0.5  # in T/b^2: both series then need at most six terms for 16 digits
 
 
-def brownian_crossing(b, T):  # noqa: N803 - the paper's names
+def brownian_crossing(b, T):
     """Probability that |W| reaches b before T, W_star of eq. (defFexplicit).
 
     For T/b^2 above 1/2 the paper's eigenfunction series; below, where that series loses all

@@ -261,6 +261,7 @@ def _steps_per_output(horizons, p, step):
     horizons = np.asarray(horizons, dtype=float)
     if not np.allclose(horizons, horizons[0] * np.arange(1, len(horizons) + 1), rtol=1e-9):
         raise SceneError(
-            "Monte Carlo needs horizons k*spacing, k = 1, 2, ...; use numpy.linspace(0, T, k + 1)[1:]"
+            "Monte Carlo needs horizons k*spacing, k = 1, 2, ...; "
+            "use numpy.linspace(0, T, k + 1)[1:]"
         )
     return horizons, max(1, int(np.ceil(p * horizons[0] / step - 1e-9)))

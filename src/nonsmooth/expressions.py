@@ -23,14 +23,40 @@ FUNCTIONS = {
     "sqrt": sympy.sqrt,
     "tanh": sympy.tanh,
 }
-_ARITHMETIC_ONLY = {
-    node: False
-    for node in (
-        "assign attribute augassign boolop compare delete dict dictcomp for formattedvalue "
-        "functiondef if ifexp import importfrom joinedstr lambda list listcomp print raise set "
-        "setcomp slice subscript try tuple while with"
-    ).split()
-}
+_ARITHMETIC_ONLY = dict.fromkeys(
+    [
+        "assign",
+        "attribute",
+        "augassign",
+        "boolop",
+        "compare",
+        "delete",
+        "dict",
+        "dictcomp",
+        "for",
+        "formattedvalue",
+        "functiondef",
+        "if",
+        "ifexp",
+        "import",
+        "importfrom",
+        "joinedstr",
+        "lambda",
+        "list",
+        "listcomp",
+        "print",
+        "raise",
+        "set",
+        "setcomp",
+        "slice",
+        "subscript",
+        "try",
+        "tuple",
+        "while",
+        "with",
+    ],
+    False,
+)
 
 
 def parse(text, variables):

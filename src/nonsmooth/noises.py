@@ -164,7 +164,7 @@ class Hamiltonian:
         return hamiltonian_drift(self.energy, self.dissipation)
 
 
-def OrnsteinUhlenbeck(theta=1.0, sigma=1.0):  # noqa: N802 - a noise, named like the others
+def OrnsteinUhlenbeck(theta=1.0, sigma=1.0):
     """Return the Langevin noise with v = theta eta^2 / 2.
 
     Parameters
@@ -176,7 +176,7 @@ def OrnsteinUhlenbeck(theta=1.0, sigma=1.0):  # noqa: N802 - a noise, named like
     return Langevin(potential=f"{theta!r}*eta**2/2", sigma=sigma)
 
 
-def KanaiTajimi(stiffness=1.0, damping=1.0, sigma=1.0):  # noqa: N802
+def KanaiTajimi(stiffness=1.0, damping=1.0, sigma=1.0):
     """Return the Hamiltonian noise of earthquake engineering, a filtered white noise.
 
     Parameters
@@ -186,9 +186,7 @@ def KanaiTajimi(stiffness=1.0, damping=1.0, sigma=1.0):  # noqa: N802
     """
     _require_positive("stiffness", stiffness)
     _require_positive("damping", damping)
-    return Hamiltonian(
-        H=f"{stiffness!r}*eta**2/2 + zeta**2/2", F=f"{damping!r}", sigma=sigma
-    )
+    return Hamiltonian(H=f"{stiffness!r}*eta**2/2 + zeta**2/2", F=f"{damping!r}", sigma=sigma)
 
 
 NOISES = {"white": White(), "langevin": OrnsteinUhlenbeck(), "hamiltonian": KanaiTajimi()}

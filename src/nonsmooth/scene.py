@@ -83,7 +83,7 @@ class Scene:
     @property
     def variables(self):
         """All the variables of the paper's state Z^n, whether the observable needs them or not."""
-        own = {symbol for symbol in self.noise.drift}
+        own = set(self.noise.drift)
         return tuple(s for s in STATE_VARIABLES if s in own or s in (models.y, models.x))
 
     @cached_property
@@ -109,7 +109,7 @@ class Scene:
 
         The observable's variables, closed under "the drift of one contains the other".
         """
-        needed = {s for s in self.observable_expression.free_symbols}
+        needed = set(self.observable_expression.free_symbols)
         while True:
             grown = needed.union(
                 *(self.drift[s].free_symbols & set(self.variables) for s in needed)

@@ -7,6 +7,7 @@ convergence in the polynomial degree is exponential for every penalization.
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 import scipy.linalg
@@ -125,7 +126,7 @@ def assemble(scene, degree):
     size = (len(edges) - 1) * degree + 1
     mass, stiffness, observable = np.zeros((3, size, size))
     where = np.empty(size)
-    for k, (left, right) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for k, (left, right) in enumerate(pairwise(edges)):
         half = (right - left) / 2
         here = slice(k * degree, (k + 1) * degree + 1)
         where[here] = left + half * (nodes + 1)

@@ -27,7 +27,9 @@ def generator(scene, seed, block):
     """
     identity = repr(scene.with_n(float("inf"))).encode()
     key = int.from_bytes(hashlib.sha256(identity).digest()[:8], "big")
-    return np.random.Generator(np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(key, block))))
+    return np.random.Generator(
+        np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(key, block)))
+    )
 
 
 def blocks(first, count):
@@ -40,6 +42,4 @@ def blocks(first, count):
     """
     if first % BLOCK:
         raise ValueError(f"paths start at a multiple of {BLOCK}, got {first}")
-    return [
-        ((first + done) // BLOCK, min(BLOCK, count - done)) for done in range(0, count, BLOCK)
-    ]
+    return [((first + done) // BLOCK, min(BLOCK, count - done)) for done in range(0, count, BLOCK)]

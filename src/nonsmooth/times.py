@@ -4,7 +4,7 @@ import numpy as np
 
 
 def logarithmic(first, last, count):
-    """Times from `first` to `last`, nearly equidistant in the logarithm.
+    """Return times from `first` to `last`, nearly equidistant in the logarithm.
 
     They are multiples of a tenth of `first`, so that schemes with a constant step meet them;
     neighbours that coincide are merged.

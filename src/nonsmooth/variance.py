@@ -90,8 +90,10 @@ def variance(scene, times, tol=1e-9):
     (w, v), (w_error, v_error) = _refine(
         lambda degree: np.array(spectral.moments(scene, times, degree)),
         # w is the difference of terms as large as the standard deviation
-        lambda degree, wv: spectral.rounding(scene, degree)
-        * np.array([np.abs(wv[0]) + np.sqrt(np.abs(wv[1])), np.abs(wv[1])]),
+        lambda degree, wv: (
+            spectral.rounding(scene, degree)
+            * np.array([np.abs(wv[0]) + np.sqrt(np.abs(wv[1])), np.abs(wv[1])])
+        ),
         lambda wv: np.array([np.full_like(times, np.inf), scale]),
     )
     if np.any(v_error > scale):

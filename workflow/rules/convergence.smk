@@ -2,33 +2,40 @@
 
 
 rule convergence_spectral:
-    message:
-        "Solve for the variance at n = {wildcards.n}"
     input:
         modules=sources("workflow/scripts/convergence/spectral.py"),
     output:
         ensure(f"{RESULTS}/convergence/spectral/n={{n}}.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/convergence/spectral_n={{n}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/convergence/spectral_n={{n}}.tsv"
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
     params:
         scene=lookup(dpath="convergence/scene", within=config),
         horizon=lookup(dpath="convergence/horizon", within=config),
         tolerance=lookup(dpath="convergence/spectral/tolerance", within=config),
         n=lambda wildcards: float(wildcards.n),
-    log:
-        f"{RESULTS}/logs/convergence/spectral_n={{n}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/convergence/spectral_n={{n}}.tsv"
-    threads: 1
+    message:
+        "Solve for the variance at n = {wildcards.n}"
     script:
         "../scripts/convergence/spectral.py"
 
 
 rule convergence_finite_difference:
-    message:
-        "March the paper's finite differences at n = {wildcards.n}"
     input:
         modules=sources("workflow/scripts/convergence/finite_difference.py"),
     output:
         ensure(f"{RESULTS}/convergence/finite_difference/n={{n}}.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/convergence/finite_difference_n={{n}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/convergence/finite_difference_n={{n}}.tsv"
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
     params:
         scene=lookup(dpath="convergence/scene", within=config),
         horizon=lookup(dpath="convergence/horizon", within=config),
@@ -36,18 +43,13 @@ rule convergence_finite_difference:
         nodes=lookup(dpath="convergence/finite_difference/nodes", within=config),
         time_step=lookup(dpath="convergence/finite_difference/time_step", within=config),
         n=lambda wildcards: float(wildcards.n),
-    log:
-        f"{RESULTS}/logs/convergence/finite_difference_n={{n}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/convergence/finite_difference_n={{n}}.tsv"
-    threads: 1
+    message:
+        "March the paper's finite differences at n = {wildcards.n}"
     script:
         "../scripts/convergence/finite_difference.py"
 
 
 rule table_4:
-    message:
-        "Typeset table 4"
     input:
         spectral=expand(
             "{results}/convergence/spectral/n={n}.nc",
@@ -66,6 +68,10 @@ rule table_4:
         f"{RESULTS}/logs/tables/table_4.log",
     benchmark:
         f"{RESULTS}/benchmarks/tables/table_4.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Typeset table 4"
     script:
         "../scripts/convergence/table_4.py"

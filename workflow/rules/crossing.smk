@@ -2,41 +2,47 @@
 
 
 rule crossing_shard:
-    message:
-        "Simulate shard {wildcards.shard} of the crossings at p = {wildcards.p}"
     input:
         modules=sources("workflow/scripts/crossing/shard.py"),
     output:
         ensure(f"{RESULTS}/crossing/shards/p={{p}}/{{shard}}.nc", non_empty=True),
-    params:
-        scene=lookup(dpath="crossing/scene", within=config),
-        threshold=lookup(dpath="crossing/threshold", within=config),
-        horizon=lookup(dpath="crossing/horizon", within=config),
-        outputs=lookup(dpath="crossing/outputs", within=config),
-        step=lookup(dpath="crossing/step", within=config),
-        shard=lookup(dpath="crossing/shard", within=config),
-        paths=lookup(dpath="crossing/paths", within=config),
-        seed=lookup(dpath="seed", within=config),
-        p=lambda wildcards: float(wildcards.p),
-        index=lambda wildcards: int(wildcards.shard),
     log:
         f"{RESULTS}/logs/crossing/p={{p}}_shard_{{shard}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/crossing/p={{p}}_shard_{{shard}}.tsv"
     # the longest jobs come first
     priority: 100
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    params:
+        scene=lookup(dpath="crossing/scene", within=config),
+        threshold=lookup(dpath="crossing/threshold", within=config),
+        horizon=lookup(dpath="crossing/horizon", within=config),
+        outputs=lookup(dpath="crossing/outputs", within=config),
+        step=lookup(dpath="crossing/step", within=config),
+        part=lambda wildcards: part(config["crossing"], wildcards.shard),
+        seed=lookup(dpath="seed", within=config),
+        p=lambda wildcards: float(wildcards.p),
+    message:
+        "Simulate shard {wildcards.shard} of the crossings at p = {wildcards.p}"
     script:
         "../scripts/crossing/shard.py"
 
 
 rule crossing_halving:
-    message:
-        "Halve the time step of the crossings at p = {wildcards.p}"
     input:
         modules=sources("workflow/scripts/crossing/halving.py"),
     output:
         ensure(f"{RESULTS}/crossing/halving/p={{p}}.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/crossing/p={{p}}_halving.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/p={{p}}_halving.tsv"
+    priority: 50
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
     params:
         scene=lookup(dpath="crossing/scene", within=config),
         threshold=lookup(dpath="crossing/threshold", within=config),
@@ -45,41 +51,37 @@ rule crossing_halving:
         paths=lookup(dpath="crossing/halving/paths", within=config),
         seed=lookup(dpath="seed", within=config),
         p=lambda wildcards: float(wildcards.p),
-    log:
-        f"{RESULTS}/logs/crossing/p={{p}}_halving.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/crossing/p={{p}}_halving.tsv"
-    priority: 50
-    threads: 1
+    message:
+        "Halve the time step of the crossings at p = {wildcards.p}"
     script:
         "../scripts/crossing/halving.py"
 
 
 rule crossing_growth:
-    message:
-        "Halve the time step in the growth of the variance"
     input:
         modules=sources("workflow/scripts/crossing/growth.py"),
     output:
         ensure(f"{RESULTS}/crossing/growth.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/crossing/growth.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/growth.tsv"
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
     params:
         scene=lookup(dpath="crossing/scene", within=config),
         time=lookup(dpath="crossing/halving/growth_time", within=config),
         step=lookup(dpath="crossing/step", within=config),
         paths=lookup(dpath="crossing/halving/growth_paths", within=config),
         seed=lookup(dpath="seed", within=config),
-    log:
-        f"{RESULTS}/logs/crossing/growth.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/crossing/growth.tsv"
-    threads: 1
+    message:
+        "Halve the time step in the growth of the variance"
     script:
         "../scripts/crossing/growth.py"
 
 
 rule crossing_monte_carlo:
-    message:
-        "Merge the shards of the crossings at p = {wildcards.p}"
     input:
         shards=expand(
             "{results}/crossing/shards/p={{p}}/{shard}.nc",
@@ -90,41 +92,45 @@ rule crossing_monte_carlo:
         modules=sources("workflow/scripts/crossing/monte_carlo.py"),
     output:
         ensure(f"{RESULTS}/crossing/p={{p}}.nc", non_empty=True),
-    params:
-        p=lambda wildcards: float(wildcards.p),
     log:
         f"{RESULTS}/logs/crossing/p={{p}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/crossing/p={{p}}.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    params:
+        p=lambda wildcards: float(wildcards.p),
+    message:
+        "Merge the shards of the crossings at p = {wildcards.p}"
     script:
         "../scripts/crossing/monte_carlo.py"
 
 
 rule crossing_asymptotic:
-    message:
-        "Evaluate the asymptotic formula"
     input:
         modules=sources("workflow/scripts/crossing/asymptotic.py"),
     output:
         ensure(f"{RESULTS}/crossing/asymptotic.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/crossing/asymptotic.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/crossing/asymptotic.tsv"
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
     params:
         scene=lookup(dpath="crossing/scene", within=config),
         threshold=lookup(dpath="crossing/threshold", within=config),
         horizon=lookup(dpath="crossing/horizon", within=config),
         outputs=lookup(dpath="crossing/outputs", within=config),
-    log:
-        f"{RESULTS}/logs/crossing/asymptotic.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/crossing/asymptotic.tsv"
-    threads: 1
+    message:
+        "Evaluate the asymptotic formula"
     script:
         "../scripts/crossing/asymptotic.py"
 
 
 rule check_crossing:
-    message:
-        "Check that the time step's bias is below the standard error"
     input:
         monte_carlo=expand(
             "{results}/crossing/p={p}.nc", results=RESULTS, p=map(label, config["crossing"]["p"])
@@ -138,14 +144,16 @@ rule check_crossing:
         f"{RESULTS}/logs/crossing/check.log",
     benchmark:
         f"{RESULTS}/benchmarks/crossing/check.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Check that the time step's bias is below the standard error"
     script:
         "../scripts/crossing/check.py"
 
 
 rule figure_2b:
-    message:
-        "Draw figure 2b"
     input:
         monte_carlo=expand(
             "{results}/crossing/p={p}.nc", results=RESULTS, p=map(label, config["crossing"]["p"])
@@ -163,14 +171,16 @@ rule figure_2b:
         f"{RESULTS}/logs/figures/figure_2b.log",
     benchmark:
         f"{RESULTS}/benchmarks/figures/figure_2b.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Draw figure 2b"
     script:
         "../scripts/crossing/figure_2b.py"
 
 
 rule table_time_step:
-    message:
-        "Typeset the table of the time step's bias"
     input:
         check=rules.check_crossing.output[0],
         modules=sources("workflow/scripts/crossing/table_time_step.py"),
@@ -180,6 +190,10 @@ rule table_time_step:
         f"{RESULTS}/logs/tables/table_time_step.log",
     benchmark:
         f"{RESULTS}/benchmarks/tables/table_time_step.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Typeset the table of the time step's bias"
     script:
         "../scripts/crossing/table_time_step.py"

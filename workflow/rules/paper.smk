@@ -6,17 +6,22 @@ TABLES = ["table_1", "table_2", "table_3", "table_4", "table_time_step"]
 
 rule figures:
     input:
-        expand("{results}/figures/{figure}.{ext}", results=RESULTS, figure=FIGURES, ext=["pdf", "png"]),
+        expand(
+            "{results}/figures/{figure}.{ext}", results=RESULTS, figure=FIGURES, ext=["pdf", "png"]
+        ),
 
 
 rule tables:
     input:
-        expand("{results}/tables/{table}.{ext}", results=RESULTS, table=TABLES, ext=["csv", "tex", "typ"]),
+        expand(
+            "{results}/tables/{table}.{ext}",
+            results=RESULTS,
+            table=TABLES,
+            ext=["csv", "tex", "typ"],
+        ),
 
 
 rule values:
-    message:
-        "Collect the numbers that the text quotes"
     input:
         spectral=rules.variance_spectral.output[0],
         monte_carlo=rules.variance_monte_carlo.output[0],
@@ -25,20 +30,27 @@ rule values:
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),
-    params:
-        config=config,
     log:
         f"{RESULTS}/logs/paper/values.log",
     benchmark:
         f"{RESULTS}/benchmarks/paper/values.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    params:
+        variance=lookup(dpath="variance", within=config),
+        sweep=lookup(dpath="crossing", within=config),
+        horizon=lookup(dpath="convergence/horizon", within=config),
+        scheme=lookup(dpath="convergence/finite_difference", within=config),
+        trajectories=lookup(dpath="trajectories", within=config),
+        seed=lookup(dpath="seed", within=config),
+    message:
+        "Collect the numbers that the text quotes"
     script:
         "../scripts/paper/values.py"
 
 
 rule paper:
-    message:
-        "Typeset the paper"
     input:
         figures=rules.figures.input,
         tables=rules.tables.input,
@@ -46,15 +58,17 @@ rule paper:
         template="paper/paper.typ",
         modules=sources("workflow/scripts/paper/typeset.py"),
     output:
-        report(
-            ensure(PAPER, non_empty=True), caption="../report/paper.rst", category="Paper"
-        ),
-    params:
-        results=RESULTS,
+        report(ensure(PAPER, non_empty=True), caption="../report/paper.rst", category="Paper"),
     log:
         f"{RESULTS}/logs/paper/paper.log",
     benchmark:
         f"{RESULTS}/benchmarks/paper/paper.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    params:
+        results=subpath(input.values, ancestor=2),
+    message:
+        "Typeset the paper"
     script:
         "../scripts/paper/typeset.py"

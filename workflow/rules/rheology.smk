@@ -2,8 +2,6 @@
 
 
 rule figure_1:
-    message:
-        "Draw figure 1, the rheological models"
     input:
         modules=sources("workflow/scripts/rheology/figure_1.py"),
     output:
@@ -16,6 +14,10 @@ rule figure_1:
         f"{RESULTS}/logs/figures/figure_1.log",
     benchmark:
         f"{RESULTS}/benchmarks/figures/figure_1.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Draw figure 1, the rheological models"
     script:
         "../scripts/rheology/figure_1.py"

@@ -2,8 +2,6 @@
 
 
 rule table_1:
-    message:
-        "Typeset table 1, the variational inequalities and penalties"
     input:
         modules=sources("workflow/scripts/scenes/table_1.py"),
     output:
@@ -12,14 +10,16 @@ rule table_1:
         f"{RESULTS}/logs/tables/table_1.log",
     benchmark:
         f"{RESULTS}/benchmarks/tables/table_1.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Typeset table 1, the variational inequalities and penalties"
     script:
         "../scripts/scenes/table_1.py"
 
 
 rule table_2:
-    message:
-        "Typeset table 2, drift and diffusion for each noise"
     input:
         modules=sources("workflow/scripts/scenes/table_2.py"),
     output:
@@ -28,14 +28,16 @@ rule table_2:
         f"{RESULTS}/logs/tables/table_2.log",
     benchmark:
         f"{RESULTS}/benchmarks/tables/table_2.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Typeset table 2, drift and diffusion for each noise"
     script:
         "../scripts/scenes/table_2.py"
 
 
 rule table_3:
-    message:
-        "Typeset table 3, penalty functions and potential of each model"
     input:
         modules=sources("workflow/scripts/scenes/table_3.py"),
     output:
@@ -44,6 +46,10 @@ rule table_3:
         f"{RESULTS}/logs/tables/table_3.log",
     benchmark:
         f"{RESULTS}/benchmarks/tables/table_3.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Typeset table 3, penalty functions and potential of each model"
     script:
         "../scripts/scenes/table_3.py"

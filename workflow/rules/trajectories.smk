@@ -2,12 +2,17 @@
 
 
 rule trajectories:
-    message:
-        "Simulate the {wildcards.model} trajectories"
     input:
         modules=sources("workflow/scripts/trajectories/simulate.py"),
     output:
         ensure(f"{RESULTS}/trajectories/{{model}}.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/trajectories/{{model}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/trajectories/{{model}}.tsv"
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
     params:
         model="{model}",
         potential=lookup(dpath="trajectories/models/{model}/potential", within=config),
@@ -18,18 +23,13 @@ rule trajectories:
         step=lookup(dpath="trajectories/step", within=config),
         outputs=lookup(dpath="trajectories/outputs", within=config),
         seed=lookup(dpath="seed", within=config),
-    log:
-        f"{RESULTS}/logs/trajectories/{{model}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/trajectories/{{model}}.tsv"
-    threads: 1
+    message:
+        "Simulate the {wildcards.model} trajectories"
     script:
         "../scripts/trajectories/simulate.py"
 
 
 rule figure_3:
-    message:
-        "Draw figure 3, the elasto-plastic trajectories"
     input:
         trajectories=f"{RESULTS}/trajectories/elasto_plastic.nc",
         modules=sources("workflow/scripts/trajectories/figure_3.py"),
@@ -43,14 +43,16 @@ rule figure_3:
         f"{RESULTS}/logs/figures/figure_3.log",
     benchmark:
         f"{RESULTS}/benchmarks/figures/figure_3.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Draw figure 3, the elasto-plastic trajectories"
     script:
         "../scripts/trajectories/figure_3.py"
 
 
 rule figure_4:
-    message:
-        "Draw figure 4, the obstacle trajectories"
     input:
         trajectories=f"{RESULTS}/trajectories/obstacle.nc",
         modules=sources("workflow/scripts/trajectories/figure_4.py"),
@@ -64,14 +66,16 @@ rule figure_4:
         f"{RESULTS}/logs/figures/figure_4.log",
     benchmark:
         f"{RESULTS}/benchmarks/figures/figure_4.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Draw figure 4, the obstacle trajectories"
     script:
         "../scripts/trajectories/figure_4.py"
 
 
 rule figure_5:
-    message:
-        "Draw figure 5, the friction trajectories"
     input:
         trajectories=f"{RESULTS}/trajectories/friction.nc",
         modules=sources("workflow/scripts/trajectories/figure_5.py"),
@@ -85,6 +89,10 @@ rule figure_5:
         f"{RESULTS}/logs/figures/figure_5.log",
     benchmark:
         f"{RESULTS}/benchmarks/figures/figure_5.tsv"
+    conda:
+        "../envs/environment.yaml"
     threads: 1
+    message:
+        "Draw figure 5, the friction trajectories"
     script:
         "../scripts/trajectories/figure_5.py"

@@ -53,11 +53,14 @@ def compare(monte_carlo, asymptotic, growth):
         [float(np.abs(d["probability"] - asymptotic["probability"]).max()) for d in monte_carlo]
     )
     if np.any(contradiction[p >= 10] > z):
-        raise CheckError("two measurements of the time step's bias contradict each other; "
-                         "look for a mistake in the splitting")
+        raise CheckError(
+            "two measurements of the time step's bias contradict each other; "
+            "look for a mistake in the splitting"
+        )
     if np.any(np.abs(expected) + 1.96 * expected_error > standard_error):
-        raise CheckError("the time step's bias is not below the standard error; "
-                         "reduce crossing.step")
+        raise CheckError(
+            "the time step's bias is not below the standard error; reduce crossing.step"
+        )
     return artifact.dataset(
         "Time step bias and distance to the limit",
         "for each p, the largest over T",

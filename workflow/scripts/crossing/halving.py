@@ -14,8 +14,8 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
     Returns
     -------
     xarray.Dataset
-        From an ensemble independent of the shards'. With a scheme of weak order q the bias of step h is the change by halving, divided by
-        1 - 2^-q.
+        From an ensemble independent of the shards'. With a scheme of weak order q the bias of
+        step h is the change by halving, divided by 1 - 2^-q.
     """
     scene = Scene(**scene)
     count, total, square = first_passage_shift(

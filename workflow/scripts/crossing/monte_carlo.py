@@ -36,7 +36,7 @@ def merge(shards, halving, p):
     }
     return artifact.dataset(
         "Threshold crossing probability by Monte Carlo",
-        shards[0].attrs["summary"].replace("shard 0", "all shards"),
+        "all shards together; the first: " + shards[0].attrs["summary"],
         {"horizon": ("horizon", horizon, "T"), "p": ((), p, "scale p")},
         {name: ("horizon", estimate[name], text) for name, text in describe.items()}
         | {

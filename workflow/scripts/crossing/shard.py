@@ -10,27 +10,24 @@ from nonsmooth.jobs import produce
 from nonsmooth.scene import Scene
 
 
-def shard(scene, threshold, horizon, outputs, p, step, paths, shard, index, seed, threads):
-    """Simulate the paths number `index * shard` onwards, `shard` of them or what is left.
+def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):
+    """Simulate a part of the ensemble: (number of its first path, number of paths).
 
     Returns
     -------
     xarray.Dataset
     """
     horizons = horizon / outputs * np.arange(1, outputs + 1)
-    first = index * shard
-    count = min(shard, paths - first)
+    first, paths = part
     scene = Scene(**scene)
-    crossed = first_passage_counts(
-        scene, threshold, horizons, p, step, count, seed, first, threads
-    )
+    crossed = first_passage_counts(scene, threshold, horizons, p, step, paths, seed, first, threads)
     return artifact.dataset(
         "Numbers of paths that cross the threshold",
-        f"shard {index} of {scene}, b = {threshold}, p = {p}",
+        f"{paths} paths from number {first} of {scene}, b = {threshold}, p = {p}",
         {"horizon": ("horizon", horizons, "T")},
         {
             "crossed": ("horizon", np.cumsum(crossed), "paths that have crossed by p T"),
-            "paths": ((), count, "number of paths"),
+            "paths": ((), paths, "number of paths"),
         },
     )
 

@@ -10,8 +10,29 @@ from nonsmooth.jobs import inputs, job
 PRINTED = "paper/printed.yaml"
 
 
-def values(config, spectral, monte_carlo, agreement, crossing):
+def values(
+    spectral,
+    monte_carlo,
+    agreement,
+    crossing,
+    variance,
+    sweep,
+    horizon,
+    scheme,
+    trajectories,
+    seed,
+):
     """Collect numbers from the artifacts and the configuration.
+
+    Parameters
+    ----------
+    spectral, monte_carlo, agreement, crossing : xarray.Dataset
+        The artifacts.
+    variance, sweep, trajectories : dict
+        Sections of the configuration.
+    horizon, scheme
+        Horizon and finite differences of table 4.
+    seed : int
 
     Returns
     -------
@@ -20,7 +41,6 @@ def values(config, spectral, monte_carlo, agreement, crossing):
     """
     with open(PRINTED, encoding="utf-8") as file:
         printed = yaml.safe_load(file)
-    variance, sweep = config["variance"], config["crossing"]
     v, tau = spectral["v"].values, spectral["time"].values
     largest = crossing.isel(p=-1)
     return {
@@ -56,24 +76,19 @@ def values(config, spectral, monte_carlo, agreement, crossing):
             "standard_error": f"{float(largest['standard_error']):.4f}",
             "ratio": f"{float(largest['distance'] / largest['standard_error']):.0f}",
         },
-        "convergence": {
-            key: f"{config['convergence'][key]:g}" for key in ("horizon",)
-        }
-        | {
-            key: f"{config['convergence']['finite_difference'][key]:g}"
-            for key in ("half_width", "nodes", "time_step")
-        },
+        "convergence": {"horizon": f"{horizon:g}"}
+        | {key: f"{scheme[key]:g}" for key in ("half_width", "nodes", "time_step")},
         "trajectories": {
-            "step": f"{config['trajectories']['step']:g}",
+            "step": f"{trajectories['step']:g}",
             "models": {
                 model.replace("_", "-"): {
                     "potential": parameters["potential"],
                     "damping": f"{parameters['damping']:g}",
                 }
-                for model, parameters in config["trajectories"]["models"].items()
+                for model, parameters in trajectories["models"].items()
             },
         },
-        "seed": str(config["seed"]),
+        "seed": str(seed),
     }
 
 
@@ -84,6 +99,6 @@ def _scientific(value):
 
 if __name__ == "__main__":
     with job(snakemake.log[0]):
-        result = values(snakemake.params.config, **inputs(snakemake))
+        result = values(**inputs(snakemake), **dict(snakemake.params.items()))
         with whole(snakemake.output[0]) as partial:
             partial.write_text(json.dumps(result, indent=1), encoding="utf-8")

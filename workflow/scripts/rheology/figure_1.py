@@ -88,9 +88,7 @@ def rheology():
     matplotlib.figure.Figure
     """
     figure, axes = plt.subplots(1, 3, figsize=(TEXT_WIDTH, 1.6))
-    for axis, label, model in zip(
-        axes, "abc", (ELASTO_PLASTIC, FRICTION, OBSTACLE), strict=True
-    ):
+    for axis, label, model in zip(axes, "abc", (ELASTO_PLASTIC, FRICTION, OBSTACLE), strict=True):
         axis.set(xlim=(-1.2, 2.75), ylim=(-1.05, 1.05), aspect="equal")
         axis.axis("off")
         axis.set_title(f"({label}) {model.title.lower()}", fontsize=8)

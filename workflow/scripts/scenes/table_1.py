@@ -32,8 +32,8 @@ def penalties():
             {
                 "model": model.title,
                 "SVI": model.inequality,
-                rf"$\varphi$": rf"$\varphi({arguments}) = {penalty.limit % z}$",
-                rf"$\varphi_n$": rf"${penalty.name}({z}) = {sympy.latex(penalty.potential(z))}$",
+                r"$\varphi$": rf"$\varphi({arguments}) = {penalty.limit % z}$",
+                r"$\varphi_n$": rf"${penalty.name}({z}) = {sympy.latex(penalty.potential(z))}$",
                 "$f_n$": rf"${sympy.latex(sympy.Matrix(force))}$",
             }
         )

@@ -14,8 +14,8 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
     Returns
     -------
     xarray.Dataset
-        From an ensemble independent of the shards'. With a scheme of weak order q the bias of step h is the change by halving, divided by
-        1 - 2^-q.
+        From an ensemble independent of the shards'. With a scheme of weak order q the bias of
+        step h is the change by halving, divided by 1 - 2^-q.
     """
     scene = Scene(**scene)
     tau = times.logarithmic(first_time, horizon, points)

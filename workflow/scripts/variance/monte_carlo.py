@@ -24,7 +24,7 @@ def merge(shards, halving):
     moments = central_moments(total)
     return artifact.dataset(
         "Variance of the integrated observable by Monte Carlo",
-        shards[0].attrs["summary"].replace("shard 0", "all shards"),
+        "all shards together; the first: " + shards[0].attrs["summary"],
         {"time": ("time", total["time"].values, "tau")},
         {
             "v": ("time", moments["variance"], "variance of int_0^tau g"),

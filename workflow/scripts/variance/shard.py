@@ -8,20 +8,20 @@ from nonsmooth.scene import Scene
 from nonsmooth.trajectories import simulate
 
 
-def shard(scene, first_time, horizon, points, step, paths, shard, index, seed, threads):
-    """Simulate the paths number `index * shard` onwards, `shard` of them or what is left.
+def shard(scene, first_time, horizon, points, step, part, seed, threads):
+    """Simulate a part of the ensemble: (number of its first path, number of paths).
 
     Returns
     -------
     xarray.Dataset
     """
     tau = times.logarithmic(first_time, horizon, points)
-    first = index * shard
+    first, paths = part
     result = simulate(
         Scene(**scene),
         horizon,
         step,
-        min(shard, paths - first),
+        paths,
         seed,
         times=tau,
         first_path=first,
@@ -29,7 +29,7 @@ def shard(scene, first_time, horizon, points, step, paths, shard, index, seed, t
     )
     return artifact.dataset(
         "Power sums of the integrated observable",
-        f"shard {index} of {Scene(**scene)}",
+        f"{paths} paths from number {first} of {Scene(**scene)}",
         {
             "time": ("time", tau, "tau"),
             "power": ("power", result["power"].values, "power"),
