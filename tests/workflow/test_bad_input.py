@@ -3,6 +3,9 @@
 import pytest
 import xarray as xr
 
+# tests that share the smoke run share a worker
+pytestmark = pytest.mark.xdist_group("smoke")
+
 RESULTS = "results/smoke"
 
 

@@ -5,6 +5,9 @@ import shutil
 import pytest
 from conftest import Repository
 
+# tests that share the smoke run share a worker
+pytestmark = pytest.mark.xdist_group("smoke")
+
 
 @pytest.fixture
 def finished(smoke_run, tmp_path):
