@@ -58,6 +58,7 @@ def values(
             "finite_difference_agreement": f"{float(agreement['finite_difference'].max()):.2f}",
             "monte_carlo_agreement": f"{float(agreement['monte_carlo'].max()):.2f}",
             "threshold": f"{float(agreement['threshold']):.2f}",
+            "false_alarm": _scientific(agreement["false_alarm"]),
             "printed": str(printed["fig:fpn-cmp-PDE-MC"]["asymptotic_value"]),
             "rounded": f"{float(spectral['gamma2']):.4f}",
             "nodes": f"{variance['finite_difference']['nodes']}",

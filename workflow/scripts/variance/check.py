@@ -52,7 +52,10 @@ def deviations(spectral, finite_difference, monte_carlo):
         "deviation from the spectral elements divided by the allowed error; all at most 1",
         {"time": ("time", tau, "tau")},
         {name: ("time", d, f"relative deviation of {name}") for name, d in ratio.items()}
-        | {"threshold": ((), z, "allowed Monte Carlo deviation in standard errors")},
+        | {
+            "threshold": ((), z, "allowed Monte Carlo deviation in standard errors"),
+            "false_alarm": ((), FALSE_ALARM, "probability of exceeding the threshold by chance"),
+        },
     )
 
 
