@@ -78,3 +78,11 @@ def smoke_run(tmp_path_factory):
     run = repository.snakemake("--cores", "2")
     assert run.returncode == 0, run.stderr[-4000:]
     return repository
+
+
+@pytest.fixture
+def finished(smoke_run, tmp_path):
+    """Return a copy of the finished smoke run, to be disturbed."""
+    folder = tmp_path / "copy"
+    shutil.copytree(smoke_run.folder, folder, symlinks=True)
+    return Repository(folder)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import xarray as xr
-from scipy.stats import beta
+from scipy.special import betainccinv, betaincinv
 
 from nonsmooth import strang as splitting
 from nonsmooth.brownian import brownian_crossing
@@ -176,10 +176,10 @@ def proportion(successes, trials, level=0.95):
     successes, trials = np.broadcast_arrays(successes, trials)
     tail = (1 - level) / 2
     with np.errstate(invalid="ignore"):
-        lower = np.where(successes == 0, 0.0, beta.ppf(tail, successes, trials - successes + 1))
-        upper = np.where(
-            successes == trials, 1.0, beta.isf(tail, successes + 1, trials - successes)
-        )
+        lower = betaincinv(successes, trials - successes + 1, tail)
+        upper = betainccinv(successes + 1, trials - successes, tail)
+    lower = np.where(successes == 0, 0.0, lower)
+    upper = np.where(successes == trials, 1.0, upper)
     return successes / trials, lower, upper
 
 

@@ -3,9 +3,6 @@
 import pytest
 import xarray as xr
 
-# tests that share the smoke run share a worker
-pytestmark = pytest.mark.xdist_group("smoke")
-
 RESULTS = "results/smoke"
 
 
@@ -33,32 +30,19 @@ def test_bad_configuration(repository, setting, message):
     assert not (repository.folder / "results").exists()
 
 
-def test_truncated_artifact(smoke_run):
-    """A rule that reads a damaged file names it and its cure, and leaves its output alone."""
-    source = smoke_run.folder / RESULTS / "trajectories" / "friction.nc"
-    figure = smoke_run.folder / RESULTS / "figures" / "figure_5.png"
+@pytest.mark.parametrize("damage", ["truncated", "foreign"])
+def test_damaged_artifact(finished, damage):
+    """A rule that reads a damaged file names it and its cure, and leaves nothing half-written."""
+    source = finished.folder / RESULTS / "trajectories" / "friction.nc"
     good = source.read_bytes()
-    try:
+    source.unlink()
+    if damage == "truncated":
         source.write_bytes(good[: len(good) // 2])
-        run = smoke_run.snakemake("--cores", "1", "--force", "--", "figure_5")
-        assert run.returncode != 0
-        assert lines_with(run, "friction.nc is not a readable netCDF file")
-        assert not list(figure.parent.glob(".*partial*"))
-    finally:
-        source.write_bytes(good)
-        assert smoke_run.snakemake("--cores", "2").returncode == 0
-
-
-def test_foreign_artifact(smoke_run):
-    """A netCDF file of somebody else's is not taken for ours."""
-    source = smoke_run.folder / RESULTS / "trajectories" / "friction.nc"
-    good = source.read_bytes()
-    try:
-        source.unlink()
+        message = "friction.nc is not a readable netCDF file"
+    else:
         xr.Dataset({"x": ("time", [1.0, 2.0])}).to_netcdf(source)
-        run = smoke_run.snakemake("--cores", "1", "--force", "--", "figure_5")
-        assert run.returncode != 0
-        assert lines_with(run, "was not written by this package")
-    finally:
-        source.write_bytes(good)
-        assert smoke_run.snakemake("--cores", "2").returncode == 0
+        message = "friction.nc was not written by this package"
+    run = finished.snakemake("--cores", "1", "--force", "--", "figure_5")
+    assert run.returncode != 0
+    assert len(lines_with(run, f"error: {RESULTS}/trajectories/{message}")) == 1
+    assert not list((finished.folder / RESULTS).rglob(".*partial*"))

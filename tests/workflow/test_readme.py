@@ -34,7 +34,7 @@ def test_example_runs():
             "exec",
         ),
         {},
-    )  # noqa: E501
+    )
 
 
 def test_named_scripts_exist():

@@ -1,20 +1,6 @@
 """What a change makes run again, and what it does not: dry runs after a whole run."""
 
-import shutil
-
 import pytest
-from conftest import Repository
-
-# tests that share the smoke run share a worker
-pytestmark = pytest.mark.xdist_group("smoke")
-
-
-@pytest.fixture
-def finished(smoke_run, tmp_path):
-    """Return a copy of the finished smoke run, to be disturbed."""
-    folder = tmp_path / "copy"
-    shutil.copytree(smoke_run.folder, folder, symlinks=True)
-    return Repository(folder)
 
 
 def edit(path, old, new):
@@ -113,21 +99,20 @@ def test_the_template_reruns_the_paper_only(finished):
     assert finished.jobs() == {"paper": 1}
 
 
-@pytest.mark.parametrize(
-    "target",
-    [
+def test_named_targets(repository):
+    """Each exists."""
+    names = [
         *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5")),
         *(f"table_{k}" for k in range(1, 5)),
-        "figures",
-        "tables",
-        "paper",
-    ],
+        *("figures", "tables", "paper"),
+    ]
+    assert set(names) <= repository.jobs(*names).keys()
+
+
+@pytest.mark.parametrize(
+    ("target", "jobs"),
+    [("table_2", {"table_2": 1}), ("figure_3", {"trajectories": 1, "figure_3": 1})],
 )
-def test_named_targets(repository, target):
-    """Each exists and asks for its own work."""
-    jobs = repository.jobs(target)
-    assert target in jobs
-    if target in {"figure_1", "table_1", "table_2", "table_3"}:
-        assert jobs == {target: 1}
-    if target == "figure_3":
-        assert jobs == {"trajectories": 1, "figure_3": 1}
+def test_a_named_target_does_its_own_work_only(repository, target, jobs):
+    """Nothing else is computed."""
+    assert repository.jobs(target) == jobs

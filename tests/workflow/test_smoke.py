@@ -11,9 +11,6 @@ import typst
 
 from nonsmooth import artifact
 
-# tests that share the smoke run share a worker
-pytestmark = pytest.mark.xdist_group("smoke")
-
 RESULTS = "results/smoke"
 FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5"]
 TABLES = ["table_1", "table_2", "table_3", "table_4", "table_time_step"]
