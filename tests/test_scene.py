@@ -40,6 +40,7 @@ def test_minimal_state(scene, state):
         ({"model": "friction", "observable": "eta"}, "eta"),
         ({"model": "friction", "potential": "y"}, "'y'"),
         ({"model": "friction", "start": {"z": 1}}, "'z'"),
+        ({"model": "obstacle", "n": float("inf"), "start": {"x": 2.0}}, "confined to [-1, 1]"),
     ],
 )
 def test_impossible_scenes_are_refused(scene, offender):

@@ -155,6 +155,19 @@ def test_stable_for_every_stiffness(model, noise):
         assert np.max(np.abs(run["x"][:, -1])) < 1 + 6 * np.sqrt(2) / 1e3
 
 
+@pytest.mark.parametrize("model", ["elasto_plastic", "friction", "obstacle"])
+@pytest.mark.parametrize("n", [10.0, np.inf])
+def test_divergence_is_an_error_and_ends(model, n):
+    """A potential that is not confining does not return numbers, nor does it hang."""
+    scene = ns.Scene(model, n=n, potential="-x**4", observable="x", start={"y": 30.0})
+    if model != "friction" and n == np.inf:
+        run = simulate(scene, 20.0, 0.1, 5, 1, times=[20.0], keep="paths")
+        assert np.all(np.abs(run["x"]) <= 1 + 1e-12)  # the walls confine
+        return
+    with pytest.raises(SceneError, match="diverged"):
+        simulate(scene.with_n(n), 20.0, 0.1, 5, 1, times=[20.0])
+
+
 def test_halved_steps_run_on_the_same_path():
     """Two half increments join to the full one: exact for the linear noises."""
     scene = ns.Scene("obstacle", ns.KanaiTajimi(2.0, 0.5), observable="eta")

@@ -11,7 +11,7 @@ from nonsmooth.brownian import brownian_crossing
 from nonsmooth.errors import SceneError
 from nonsmooth.kernels import kernel
 from nonsmooth.streams import blocks, generator
-from nonsmooth.trajectories import initial_state, parallel
+from nonsmooth.trajectories import initial_state, parallel, require_finite
 from nonsmooth.variance import asymptotic_variance
 
 
@@ -19,8 +19,9 @@ from nonsmooth.variance import asymptotic_variance
 def _first_passage(rng, s, start, threshold, outputs, steps_per_output, crossed):
     """Count in `crossed` the paths by the output interval in which |Delta| reaches the threshold.
 
-    A path is dropped as soon as it has crossed.
+    A path is dropped as soon as it has crossed. Returns nan if a path diverged, else 0.
     """
+    remainder = 0.0
     for i in range(start.shape[1]):
         zeta, eta, y, x = start[0, i], start[1, i], start[2, i], start[3, i]
         delta = 0.0
@@ -34,6 +35,8 @@ def _first_passage(rng, s, start, threshold, outputs, steps_per_output, crossed)
             if abs(delta) >= threshold:
                 crossed[k // steps_per_output] += 1
                 break
+        remainder += 0.0 * delta
+    return remainder
 
 
 @kernel
@@ -110,7 +113,7 @@ def first_passage_counts(
     def run(job):
         block, count = job
         crossed = np.zeros(len(horizons), dtype=np.int64)
-        _first_passage(
+        remainder = _first_passage(
             generator(scene, seed, block),
             scheme,
             initial_state(scene, count),
@@ -119,6 +122,7 @@ def first_passage_counts(
             steps,
             crossed,
         )
+        require_finite([remainder])
         return crossed
 
     return sum(parallel(run, blocks(first_path, paths), threads))

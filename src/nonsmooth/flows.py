@@ -42,6 +42,8 @@ def penalised(z, t, drive, rate, knot, inner, outer):
 
 @kernel
 def _through_the_pieces(z, t, drive, rate, knot, inner, outer):
+    if not math.isfinite(z + t + drive):
+        return math.nan
     jump = (inner - outer) * knot
     while True:
         if z > knot or (z == knot and drive - rate * knot > inner * knot):
@@ -72,6 +74,8 @@ def _through_the_pieces(z, t, drive, rate, knot, inner, outer):
 @kernel
 def dry_friction(z, t, drive, rate):
     """Flow of z' in drive - rate z - Sgn(z) over a time t: sticks at 0 while |drive| <= 1."""
+    if not math.isfinite(z + t + drive):
+        return math.nan
     while True:
         if z == 0.0:
             if abs(drive) <= 1.0:
@@ -98,6 +102,11 @@ def confined(z, t, drive):
 def spring_contact(y, x, t, n):
     """Flow of x' = y, y' = -n (x - proj x): free flight between two elastic walls at x = +-1."""
     omega = math.sqrt(n)
+    speed = math.hypot(y, omega * max(abs(x) - 1.0, 0.0))
+    if speed == 0.0 or not math.isfinite(speed):
+        return y, x
+    # two flights and two contacts bring every orbit back to where it was
+    t %= 4.0 / speed + 2.0 * math.pi / omega
     while True:
         side = math.copysign(1.0, x)
         depth, inward = side * x - 1.0, -side * y
@@ -111,8 +120,6 @@ def spring_contact(y, x, t, n):
                 return y, x
             t -= phase / omega
             x, y = side, -side * omega * amplitude
-        if y == 0.0:
-            return y, x
         wall = math.copysign(1.0, y)
         flight = (wall - x) / y
         if flight >= t:
@@ -123,13 +130,10 @@ def spring_contact(y, x, t, n):
 
 @kernel
 def elastic_impact(y, x, t):
-    """Flow of x' = y on [-1, 1] with y -> -y at the walls."""
-    if y == 0.0:
+    """Flow of x' = y on [-1, 1] with y -> -y at the walls: a straight line, folded."""
+    straight = x + y * t
+    folds = math.floor((straight + 1.0) / 2.0)
+    x = straight - 2.0 * folds
+    if folds % 2.0 == 0.0:
         return y, x
-    while True:
-        wall = math.copysign(1.0, y)
-        flight = (wall - x) / y
-        if flight >= t:
-            return y, x + y * t
-        t -= flight
-        x, y = wall, -y
+    return -y, -x

@@ -5,14 +5,25 @@ into. The cache folder is therefore named after the content of the whole package
 """
 
 import hashlib
-from functools import partial
 from pathlib import Path
 
 import numba
 
 _PACKAGE = Path(__file__).parent
 _DIGEST = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(_PACKAGE.glob("*.py"))))
-numba.config.CACHE_DIR = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
+_CACHE = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
 
-kernel = partial(numba.njit, cache=True, nogil=True, error_model="numpy")
-inlined = partial(kernel, inline="always")
+
+def kernel(function, inline="never"):
+    """Compile a function to machine code when it is first called."""
+    # the folder is read at decoration; other users of numba keep theirs
+    elsewhere, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _CACHE
+    try:
+        return numba.njit(function, cache=True, nogil=True, error_model="numpy", inline=inline)
+    finally:
+        numba.config.CACHE_DIR = elsewhere
+
+
+def inlined(function):
+    """Compile a function into its callers, which is worth it for what a time step consists of."""
+    return kernel(function, inline="always")

@@ -63,6 +63,15 @@ class Scene:
             raise SceneError("a scene needs a finite damping; choose a positive number")
         for name in self.start:
             _require_known("start variable", name, [s.name for s in self.variables])
+        if (
+            self.n == float("inf")
+            and self.model in ("elasto_plastic", "obstacle")
+            and abs(self.start.get("x", 0.0)) > 1
+        ):
+            raise SceneError(
+                f"at n = inf the displacement is confined to [-1, 1], but it starts at "
+                f"{self.start['x']}; start inside or choose a finite n"
+            )
         unknown = self.observable_expression.free_symbols - set(self.variables)
         if unknown:
             raise SceneError(

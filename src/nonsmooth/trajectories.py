@@ -131,10 +131,12 @@ def simulate(
             if keep == "paths":
                 history.append(np.vstack([state[state_rows], delta]))
             else:
-                history.append(np.sum(delta ** power[:, None], axis=1))
+                with np.errstate(over="ignore", invalid="ignore"):  # refused below
+                    history.append(np.sum(delta ** power[:, None], axis=1))
         return np.array(history)
 
     results = parallel(run, blocks(first_path, paths), threads)
+    require_finite(results)
     if keep == "moments":
         return power_sums(sum(results), times)
     stacked = np.concatenate(results, axis=2)
@@ -143,6 +145,20 @@ def simulate(
         {name: (("path", "time"), stacked[:, i].T) for i, name in enumerate(names)},
         coords={"time": np.concatenate([[0.0], times])},
     )
+
+
+def require_finite(results):
+    """Refuse results of paths that left every bound.
+
+    Raises
+    ------
+    SceneError
+    """
+    if not all(np.all(np.isfinite(result)) for result in results):
+        raise SceneError(
+            "the simulation diverged: the drift is not confining or too steep for the step; "
+            "mend the potentials or choose a smaller step"
+        )
 
 
 def step_bias(scene, horizon, step, paths, seed, times=None, threads=None):
@@ -176,7 +192,9 @@ def step_bias(scene, horizon, step, paths, seed, times=None, threads=None):
             history.append(np.sum((delta[0] ** 2 - delta[1] ** 2) ** power[:, None], axis=1))
         return np.array(history)
 
-    return power_sums(sum(parallel(run, blocks(0, paths), threads)), times)
+    results = parallel(run, blocks(0, paths), threads)
+    require_finite(results)
+    return power_sums(sum(results), times)
 
 
 def power_sums(sums, times):
