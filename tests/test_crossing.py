@@ -99,6 +99,9 @@ def test_divergence_is_an_error():
         ({"threshold": 0.0}, "threshold > 0"),
         ({"p": -1.0}, "p > 0"),
         ({"method": "montecarlo"}, "monte_carlo"),
+        ({"step": -0.1}, "step > 0"),
+        ({"paths": 0}, "paths > 0"),
+        ({"horizons": [0.0, 1.0]}, "first horizon > 0"),
         ({"horizons": [1.0, 1.5]}, "numpy.linspace"),
     ],
 )
@@ -107,3 +110,10 @@ def test_bad_requests_are_refused(arguments, cure):
     defaults = {"threshold": 0.6, "horizons": HORIZONS, "p": 1.0, "paths": 100}
     with pytest.raises(SceneError, match=cure):
         ns.crossing_probability(SCENE, **(defaults | arguments))
+
+
+def test_formula_refuses_an_observable_that_is_not_centred():
+    """(equivalent) needs E g = 0; the message has the mean."""
+    scene = ns.Scene("friction", observable="y**2")
+    with pytest.raises(SceneError, match=r"E g = 0.*subtract"):
+        ns.crossing_probability(scene, 0.6, [1.0], method="asymptotic")

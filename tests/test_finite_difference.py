@@ -54,6 +54,15 @@ def test_stated_error_covers_the_true_one(n, nodes, time_step):
     assert np.all(np.abs(w - exact["w"]) <= w_error + 1e-12)
 
 
+def test_intensity_of_the_noise_enters_squared(reference):
+    """Sigma = 2: against spectral elements, within the stated error."""
+    scene = ns.Scene("friction", noise=ns.White(2.0), n=10)
+    exact = ns.variance(scene, TAU)["v"].values
+    _, v, _, error = finite_difference.moments_with_error(scene, TAU, 9.0, 1801, 0.01)
+    assert np.all(np.abs(v - exact) <= error)
+    assert np.all(exact > 3.9 * reference)  # friction holds back a stronger noise less
+
+
 @pytest.mark.parametrize(
     ("arguments", "cure"),
     [

@@ -14,6 +14,7 @@ from nonsmooth.models import STATE_VARIABLES, x, y
 NOISES = {
     "white": "white",
     "langevin": ns.OrnsteinUhlenbeck(theta=1.3),
+    "langevin, affine": ns.Langevin("eta**2/2 + eta"),
     "langevin, quartic": ns.Langevin("eta**4/4 + eta**2/2", sigma=0.8),
     "hamiltonian": ns.KanaiTajimi(stiffness=2.0, damping=0.7),
     "hamiltonian, general": ns.Hamiltonian("zeta**2/2 + eta**4/4 + eta**2", "1 + 0.1*eta**2"),

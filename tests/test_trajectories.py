@@ -15,6 +15,16 @@ FRICTION = ns.Scene("friction", n=100)
 FALSE_ALARM = 1e-5
 
 
+def test_spelling_of_a_number_changes_no_stream():
+    """Damping 1 and 1.0 are the same scene; a start outside the limit's walls is no obstacle."""
+    ends = [
+        simulate(ns.Scene("obstacle", damping=c, start={"x": 2}), 0.5, 0.1, 3, 1, keep="paths")
+        for c in (1, 1.0, np.float64(1.0))
+    ]
+    assert ends[0].identical(ends[1])
+    assert ends[0].identical(ends[2])
+
+
 def test_number_of_threads_changes_no_bit():
     """One and three threads give identical sums."""
     runs = [simulate(FRICTION, 1.0, 0.05, 12_000, seed=9, threads=k) for k in (1, 3)]
@@ -38,7 +48,7 @@ def test_streams_differ_between_blocks_seeds_and_scenes():
     ends = [
         simulate(s, 0.5, 0.1, 10, seed, times=[0.5], keep="paths", first_path=f)["y"].values[:, -1]
         for s in scenes
-        for seed in (1, 2, (1, 1))
+        for seed in (1, 2, (1, "a"), (1, "b"), (1, 0))
         for f in (0, BLOCK)
     ]
     assert len(np.unique(ends)) == np.size(ends)
@@ -194,7 +204,15 @@ def test_time_grids():
 
 @pytest.mark.parametrize(
     "arguments",
-    [{"step": 0.0}, {"paths": 0}, {"horizon": -1.0}, {"times": [2.0, 1.0]}, {"times": [9.0]}],
+    [
+        {"step": 0.0},
+        {"paths": 0},
+        {"horizon": -1.0},
+        {"times": [2.0, 1.0]},
+        {"times": [9.0]},
+        {"seed": -1},
+        {"keep": "path"},
+    ],
 )
 def test_bad_requests_are_refused(arguments):
     """One line naming the parameter."""

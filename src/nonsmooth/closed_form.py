@@ -24,7 +24,8 @@ def friction_variance(n, damping=1.0):
     Returns
     -------
     value, error : float
-        The error is the quadrature's own estimate plus rounding.
+        The error is the quadrature's own estimate plus rounding, which grows as C_b -> 0, where
+        u' is the small difference of two terms.
     """
     knot = 0.0 if math.isinf(n) else 1 / n
     root = math.sqrt(damping)
@@ -55,4 +56,6 @@ def friction_variance(n, damping=1.0):
             moments[row] += quad(integrand, left, right, epsabs=0, epsrel=1e-13, limit=200)
     (square, square_error), (mass, mass_error) = moments
     value = square / mass
-    return value, value * (square_error / square + mass_error / mass + 8 * np.finfo(float).eps)
+    return value, value * (
+        square_error / square + mass_error / mass + 8 * np.finfo(float).eps * (1 + 1 / damping)
+    )

@@ -6,12 +6,13 @@ import numpy as np
 import xarray as xr
 from scipy.special import betainccinv, betaincinv
 
+from nonsmooth import spectral
 from nonsmooth import strang as splitting
 from nonsmooth.brownian import brownian_crossing
 from nonsmooth.errors import SceneError
 from nonsmooth.kernels import kernel
 from nonsmooth.streams import blocks, generator
-from nonsmooth.trajectories import initial_state, parallel, require_finite
+from nonsmooth.trajectories import initial_state, parallel, require_finite, require_positive
 from nonsmooth.variance import asymptotic_variance
 
 
@@ -218,15 +219,20 @@ def crossing_probability(
     SceneError
         If a parameter is out of range or the method unknown.
     """
-    for name, value in (("threshold", threshold), ("p", p)):
-        if not 0 < value < np.inf:
-            raise SceneError(f"a crossing needs {name} > 0, got {value}; choose a positive number")
+    for name, value in (("threshold", threshold), ("p", p), ("step", step), ("paths", paths)):
+        require_positive(name, value)
     horizons = np.atleast_1d(np.asarray(horizons, dtype=float))
     if method == "monte_carlo":
         crossed = first_passage_counts(scene, threshold, horizons, p, step, paths, seed)
         values = crossing_estimate(np.cumsum(crossed), paths)
     elif method == "asymptotic":
         gamma2 = asymptotic_variance(scene)
+        mean = spectral.mean(scene)
+        if abs(mean) > 1e-8 * np.sqrt(gamma2.value):
+            raise SceneError(
+                f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
+                f"{mean:.10g}; subtract it from g"
+            )
         values = dict(
             zip(
                 ("probability", "probability_error"),
@@ -263,6 +269,7 @@ def asymptotic_crossing(threshold, horizons, variance, variance_error):
 
 def _steps_per_output(horizons, p, step):
     horizons = np.asarray(horizons, dtype=float)
+    require_positive("first horizon", horizons[0])
     if not np.allclose(horizons, horizons[0] * np.arange(1, len(horizons) + 1), rtol=1e-9):
         raise SceneError(
             "Monte Carlo needs horizons k*spacing, k = 1, 2, ...; "

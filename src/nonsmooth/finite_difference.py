@@ -68,7 +68,7 @@ def moments(scene, times, half_width, nodes, time_step):
     for k in range(1, outputs[-1] + 1):
         w = solve(g + w)
         slope[1:-1] = (w[2:] - w[:-2]) / (2 * width)
-        v = solve(time_step * slope**2 + v)
+        v = solve(time_step * scene.noise.sigma**2 * slope**2 + v)
         history[k] = w[nodes // 2], v[nodes // 2]
     return tuple(np.array([history[k] for k in outputs]).T)
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import sympy
 
 from nonsmooth.penalties import ABSOLUTE_VALUE, BARRIER, Penalty
-from nonsmooth.penalties import n as penalization  # noqa: F401 - one of the model's symbols
 
 zeta, eta, y, x = sympy.symbols("zeta eta y x", real=True)
 STATE_VARIABLES = (zeta, eta, y, x)

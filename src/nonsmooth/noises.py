@@ -173,7 +173,7 @@ def OrnsteinUhlenbeck(theta=1.0, sigma=1.0):
         Relaxation rate and intensity, "1".
     """
     _require_positive("theta", theta)
-    return Langevin(potential=f"{theta!r}*eta**2/2", sigma=sigma)
+    return Langevin(potential=f"{float(theta)!r}*eta**2/2", sigma=sigma)
 
 
 def KanaiTajimi(stiffness=1.0, damping=1.0, sigma=1.0):
@@ -186,7 +186,9 @@ def KanaiTajimi(stiffness=1.0, damping=1.0, sigma=1.0):
     """
     _require_positive("stiffness", stiffness)
     _require_positive("damping", damping)
-    return Hamiltonian(H=f"{stiffness!r}*eta**2/2 + zeta**2/2", F=f"{damping!r}", sigma=sigma)
+    return Hamiltonian(
+        H=f"{float(stiffness)!r}*eta**2/2 + zeta**2/2", F=f"{float(damping)!r}", sigma=sigma
+    )
 
 
 NOISES = {"white": White(), "langevin": OrnsteinUhlenbeck(), "hamiltonian": KanaiTajimi()}

@@ -56,6 +56,15 @@ class Scene:
         if isinstance(self.noise, str):
             _require_known("noise", self.noise, noises.NOISES)
             object.__setattr__(self, "noise", noises.NOISES[self.noise])
+        for name in ("n", "damping"):
+            try:
+                object.__setattr__(self, name, float(getattr(self, name)))
+            except (TypeError, ValueError):
+                raise SceneError(
+                    f"a scene needs a number for {name}, got {getattr(self, name)!r}; choose one"
+                ) from None
+        start = {name: float(value) for name, value in sorted(self.start.items())}
+        object.__setattr__(self, "start", start)
         for name, value in (("n", self.n), ("damping", self.damping)):
             if not value > 0:
                 raise SceneError(f"a scene needs {name} > 0, got {value}; choose a positive number")
@@ -79,6 +88,18 @@ class Scene:
                 f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
             )
         self.potential_expression  # noqa: B018 - reads the formula, so that a bad one fails here
+
+    @property
+    def identity(self):
+        """All that tells scenes apart except n, by which no random stream depends."""
+        return (
+            self.model,
+            repr(self.noise),
+            self.damping,
+            self.potential,
+            self.observable,
+            self.start,
+        )
 
     def with_n(self, n):
         """Return the same scene with another penalization."""

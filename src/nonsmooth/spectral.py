@@ -17,6 +17,7 @@ from numpy.polynomial import legendre
 from nonsmooth import models
 from nonsmooth.errors import SceneError
 from nonsmooth.expressions import vectorised
+from nonsmooth.penalties import n as penalization
 
 _NEGLIGIBLE = 80.0  # the mesh ends where the density has fallen by exp(-80) = 2e-35
 _SMALLEST = 2.0**-7  # width of the elements at a kink, in units of the state
@@ -64,7 +65,7 @@ def potential(scene):
         energy += (
             sympy.Abs(y)
             if knot == 0
-            else penalty.potential(y).subs(models.penalization, sympy.Float(scene.n))
+            else penalty.potential(y).subs(penalization, sympy.Float(scene.n))
         )
     return 2 * energy / scene.noise.sigma**2, knot
 
@@ -78,15 +79,16 @@ def mesh(scene):
         end *= 1.25
     start = abs(scene.start.get("y", 0.0))
     end = max(end, 1.5 * start)
+    knot = min(knot, end)  # beyond, the kink is never seen
     outer = [knot]
-    width = max(min(_SMALLEST, end / 8), knot / 4)
+    width = min(max(_SMALLEST, knot / 4), end / 8)
     while outer[-1] < end:
         outer.append(outer[-1] + width)
         width = min(2 * width, end / 8)
-    inner, width = [knot], max(_SMALLEST, knot / 4)
+    inner, width = [knot], min(max(_SMALLEST, knot / 4), end / 8)
     while inner[-1] > 1.5 * width:
         inner.append(inner[-1] - width)
-        width *= 2
+        width = min(2 * width, end / 8)
     edges = {0.0, start, *outer, *inner}
     return np.unique([side * edge for edge in edges for side in (-1, 1)])
 
@@ -171,6 +173,11 @@ def spectrum(scene, degree):
     rates = scene.damping * (1 / nu - 1)
     rates[0] = 0.0
     return Spectrum(rates, product[0], product, start)
+
+
+def mean(scene, degree=12):
+    """Stationary mean of the observable."""
+    return assemble(scene, degree)[3].sum()
 
 
 def rounding(scene, degree):

@@ -78,7 +78,8 @@ def strang(scene, step):
     white = scene.noise.kind == "white"
     equations = {models.y: -scene.damping * models.y} if white else scene.noise.drift
     jacobian = sympy.Matrix(list(equations.values())).jacobian(list(equations))
-    linear = not jacobian.free_symbols
+    at_rest = [f.subs(dict.fromkeys(equations, 0)) for f in equations.values()]
+    linear = not jacobian.free_symbols and not any(at_rest)
     transition, factor = _gaussian_step(
         np.array(jacobian, dtype=float) if linear else np.zeros((1, 1)), scene.noise.sigma, step
     )

@@ -4,8 +4,11 @@ The penalization n does not enter: scenes that differ only in n are driven by th
 """
 
 import hashlib
+from numbers import Integral
 
 import numpy as np
+
+from nonsmooth.errors import SceneError
 
 BLOCK = 5_000  # paths per stream; changing it changes every Monte Carlo result
 
@@ -16,7 +19,8 @@ def generator(scene, seed, block):
     Parameters
     ----------
     scene : Scene
-    seed : int
+    seed : int or tuple
+        A non-negative number, or (number, label, ...) for an ensemble of its own.
     block : int
         Index of the block, counted from the first path of the whole ensemble.
 
@@ -24,12 +28,19 @@ def generator(scene, seed, block):
     -------
     numpy.random.Generator
         SFC64, seeded through numpy's SeedSequence.
+
+    Raises
+    ------
+    SceneError
+        If the seed is not a non-negative integer.
     """
-    identity = repr(scene.with_n(float("inf"))).encode()
+    entropy, *labels = seed if isinstance(seed, tuple) else (seed,)
+    if not (isinstance(entropy, Integral) and entropy >= 0):
+        raise SceneError(f"a seed is a non-negative integer, got {entropy!r}; choose one")
+    identity = repr((scene.identity, labels)).encode()
     key = int.from_bytes(hashlib.sha256(identity).digest()[:8], "big")
-    return np.random.Generator(
-        np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(key, block)))
-    )
+    sequence = np.random.SeedSequence(int(entropy), spawn_key=(key, block))
+    return np.random.Generator(np.random.SFC64(sequence))
 
 
 def blocks(first, count):

@@ -90,7 +90,7 @@ def simulate(
         Longest time step, "1".
     paths : int
         Number of paths.
-    seed : int
+    seed : int or tuple
         The same seed gives the same bits whatever the number of threads.
     times : array_like, shape (k,), optional
         Increasing output times in (0, horizon]; 200 equidistant ones unless given.
@@ -113,9 +113,11 @@ def simulate(
     SceneError
         If a parameter is out of range.
     """
+    if keep not in ("moments", "paths"):
+        raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
     times = _output_times(horizon, times)
-    _require(step > 0, "step", step)
-    _require(paths > 0, "paths", paths)
+    require_positive("step", step)
+    require_positive("paths", paths)
     grid = equal_steps(times, step)
     schemes = [splitting.strang(scene, h) for _, h in grid]
     state_rows = [i for i, symbol in enumerate(STATE_VARIABLES) if symbol.name in scene.state]
@@ -227,13 +229,14 @@ def central_moments(dataset):
 
 
 def _output_times(horizon, times):
-    _require(0 < horizon < np.inf, "horizon", horizon)
+    require_positive("horizon", horizon)
     times = np.linspace(0, horizon, 201)[1:] if times is None else np.asarray(times, dtype=float)
     if not (np.all(np.diff(times) > 0) and times[0] > 0 and times[-1] <= horizon):
         raise SceneError("the output times must increase within (0, horizon]; sort them")
     return times
 
 
-def _require(condition, name, value):
-    if not condition:
+def require_positive(name, value):
+    """Refuse what is not a positive finite number."""
+    if not 0 < value < np.inf:
         raise SceneError(f"the simulation needs {name} > 0, got {value}; choose a positive number")
