@@ -3,7 +3,7 @@
 import sys
 
 from workflow.dependencies import sources
-from workflow.experiment import check, finite, label, part, shards
+from workflow.experiment import check, finite, halving_paths, label, part, shards
 from nonsmooth.errors import NonsmoothError
 
 
@@ -21,7 +21,7 @@ PAPER = config["outputs"]["paper"]
 
 wildcard_constraints:
     model="elasto_plastic|friction|obstacle",
-    n="[0-9.e+]+|inf",
+    n="[0-9.e+-]+|inf",
     p="[0-9.e+-]+",
     shard="[0-9]+",
 

@@ -79,6 +79,16 @@ def test_the_smoke_configuration_only_overrides():
         ("crossing.scene.model", "obstacle", "crossing.scene has the state (y, x)"),
         ("trajectories.models.friction.damping", 0, "must be greater than 0"),
         ("trajectories.models.friction.potential", "x +", "cannot read the formula"),
+        ("convergence.scene.n", 5, "unknown key 'n' in 'convergence.scene'"),
+        ("variance.scene.n", float("inf"), "must be at most"),
+        ("crossing.threshold", float("nan"), "'crossing.threshold' is not a number"),
+        ("crossing.p", [1, float("inf")], "'crossing.p.1' = inf: must be at most"),
+        ("crossing.scene.noise", "langevin", "with white noise only"),
+        ("crossing.outputs", 1, "must be at least 2"),
+        ("variance.finite_difference.nodes", 4003, "use 4001"),
+        ("variance.finite_difference.time_step", 0.003, "twice it must divide"),
+        ("variance.horizon", 0.01, "must be a larger multiple"),
+        ("variance.first_time", 0.07, "must be a larger multiple"),
         ("outputs.results", "config.yaml/results", "cannot write into 'config.yaml'"),
     ],
 )
@@ -101,5 +111,7 @@ def test_missing_key():
 
 def test_labels_and_shards():
     """Numbers as they stand in file names, and the last shard may be smaller."""
-    assert [label(x) for x in (2, 0.5, 1e6, float("inf"))] == ["2", "0.5", "1e+06", "inf"]
+    numbers = (2, 0.5, 1e6, 1234567, 0.12345678, 1e-5, float("inf"))
+    assert [float(label(x)) for x in numbers] == list(numbers)
+    assert [label(x) for x in (2, 2.0, 0.5, float("inf"))] == ["2", "2", "0.5", "inf"]
     assert shards({"paths": 12_000, "shard": 5_000}) == [0, 1, 2]

@@ -9,5 +9,5 @@ import sys
 from pathlib import Path
 
 SOURCES = str(Path(__file__).parents[1] / "src")
-os.environ["PYTHONPATH"] = SOURCES
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [SOURCES, os.environ.get("PYTHONPATH")]))
 sys.path.insert(0, SOURCES)

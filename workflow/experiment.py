@@ -1,7 +1,7 @@
 """What the rules need to know of the configuration."""
 
 import os
-from math import ceil, isfinite
+from math import ceil, isfinite, isnan
 from pathlib import Path
 
 import yaml
@@ -22,13 +22,24 @@ def check(config):
         One line: unknown or out-of-range key, impossible scene, unwritable folder.
     """
     validate(config, yaml.safe_load(SCHEMA.read_text(encoding="utf-8")))
+    for key, number in _numbers(config):
+        if isnan(number):
+            raise ConfigError(f"config: {key!r} is not a number; give it one")
     for topic in ("variance", "crossing", "convergence"):
         scene = Scene(**config[topic]["scene"])
-        if scene.state != ("y",):
+        if scene.state != ("y",) or scene.noise.kind != "white":
             raise SceneError(
-                f"config: {topic}.scene has the state ({', '.join(scene.state)}), but its "
-                "reference solver takes (y) only; choose friction with potential '0' and g of y"
+                f"config: {topic}.scene has the state ({', '.join(scene.state)}) with "
+                f"{scene.noise.title}, but its reference solver takes (y) with white noise only; "
+                "choose friction with potential '0' and g of y"
             )
+        nodes = config[topic].get("finite_difference", {}).get("nodes", 1)
+        if nodes % 4 != 1:
+            raise ConfigError(
+                f"config: '{topic}.finite_difference.nodes' = {nodes}: (N - 1)/4 must be an "
+                f"integer, so that the mesh can be halved; use {nodes // 4 * 4 + 1}"
+            )
+    _check_times(config["variance"])
     for model, parameters in config["trajectories"]["models"].items():
         Scene(model, potential=parameters["potential"], damping=parameters["damping"])
     for key, path in config["outputs"].items():
@@ -42,9 +53,39 @@ def check(config):
             )
 
 
+def _numbers(value, path=""):
+    """Yield every number of the configuration with its dotted key."""
+    if isinstance(value, dict | list):
+        items = value.items() if isinstance(value, dict) else enumerate(value)
+        for key, inner in items:
+            yield from _numbers(inner, f"{path}.{key}" if path else str(key))
+    elif isinstance(value, int | float):
+        yield path, value
+
+
+def _check_times(variance):
+    """Figure 2a's times are multiples of first_time/10, and the paper's scheme must meet them."""
+    unit, horizon = variance["first_time"] / 10, variance["horizon"]
+    if horizon <= variance["first_time"] or not _divides(unit, horizon):
+        raise ConfigError(
+            f"config: 'variance.horizon' = {horizon} must be a larger multiple of "
+            f"variance.first_time/10 = {unit:g}; change either"
+        )
+    step = variance["finite_difference"]["time_step"]
+    if not _divides(2 * step, unit):
+        raise ConfigError(
+            f"config: 'variance.finite_difference.time_step' = {step}: twice it must divide "
+            f"variance.first_time/10 = {unit:g}; change either"
+        )
+
+
+def _divides(part, whole):
+    return abs(whole / part - round(whole / part)) < 1e-9 * whole / part
+
+
 def label(number):
     """Spell a number of the configuration as it stands in file names."""
-    return f"{number:g}"
+    return f"{float(number):.17g}"
 
 
 def shards(topic):
@@ -56,6 +97,11 @@ def part(topic, shard):
     """First path of a shard and number of its paths; the other shards do not enter."""
     first = int(shard) * topic["shard"]
     return first, min(topic["shard"], topic["paths"] - first)
+
+
+def halving_paths(topic, p):
+    """Spend on every p what the largest costs, as far as the samples themselves go."""
+    return min(topic["paths"], round(topic["halving"]["paths"] * max(topic["p"]) / float(p)))
 
 
 def finite(numbers):

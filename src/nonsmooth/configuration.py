@@ -56,6 +56,8 @@ def _cure(error):
             return f"must be at most {limit}"
         case "type":
             return f"must be of type {limit}"
+        case "multipleOf":
+            return f"must be a multiple of {limit}"
         case "enum":
             return f"must be one of {', '.join(map(str, limit))}"
         case _:

@@ -72,7 +72,7 @@ def trajectory(dataset, limits):
         1, 3, figsize=(TEXT_WIDTH, 2.25), width_ratios=[1.25, 1.25, 1.0], layout="constrained"
     )
     finite = [n for n in dataset["n"].values if n < float("inf")]
-    styles = {n: (color, "--", 0.9) for n, color in zip(finite, (SKY, BLUE), strict=False)}
+    styles = {n: ((SKY, GREEN, BLACK)[k % 3], "--", 0.9) for k, n in enumerate(finite)}
     if finite:
         styles[finite[-1]] = (BLUE, "-", 1.6)
     styles[float("inf")] = (ORANGE, "-", 0.5)

@@ -5,7 +5,6 @@ Cells are LaTeX, with mathematics between dollar signs.
 
 from pathlib import Path
 
-import pandas as pd
 import tylax
 
 from nonsmooth.files import whole
@@ -62,8 +61,9 @@ def _typst(cell):
     )
 
 
-def scientific(value, digits=1):
-    """Spell a number as LaTeX mathematics in scientific notation."""
+def scientific(value, digits=1, bound=False):
+    """Spell a number as LaTeX mathematics in scientific notation; a bound is rounded up."""
+    value = float(value) * (1 + 10.0**-digits / 2 if bound else 1)
     mantissa, exponent = f"{value:.{digits}e}".split("e")
     return rf"${mantissa} \times 10^{{{int(exponent)}}}$"
 
@@ -76,8 +76,3 @@ def penalization(n):
 def sorted_by(name, datasets):
     """Return artifacts in the order of a scalar coordinate."""
     return sorted(datasets, key=lambda dataset: float(dataset[name]))
-
-
-def frame(rows):
-    """Return a DataFrame from a list of dicts."""
-    return pd.DataFrame(rows)

@@ -35,6 +35,7 @@ def test_a_new_n_is_solved_alone(finished):
         "convergence_spectral": 1,
         "convergence_finite_difference": 1,
         "table_4": 1,
+        "values": 1,
         "paper": 1,
     }
 

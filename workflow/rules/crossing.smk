@@ -48,7 +48,7 @@ rule crossing_halving:
         threshold=lookup(dpath="crossing/threshold", within=config),
         horizon=lookup(dpath="crossing/horizon", within=config),
         step=lookup(dpath="crossing/step", within=config),
-        paths=lookup(dpath="crossing/halving/paths", within=config),
+        paths=lambda wildcards: halving_paths(config["crossing"], wildcards.p),
         seed=lookup(dpath="seed", within=config),
         p=lambda wildcards: float(wildcards.p),
     message:

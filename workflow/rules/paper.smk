@@ -27,6 +27,7 @@ rule values:
         monte_carlo=rules.variance_monte_carlo.output[0],
         agreement=rules.check_variance.output[0],
         crossing=rules.check_crossing.output[0],
+        convergence=rules.table_4.input.spectral,
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),

@@ -1,8 +1,9 @@
 """Table 4: v(0, T)/T for increasing n, printed and computed."""
 
+import pandas as pd
 import yaml
 
-from nonsmooth.tables import frame, penalization, scientific, sorted_by, typeset
+from nonsmooth.tables import penalization, scientific, sorted_by, typeset
 
 PRINTED = "paper/printed.yaml"
 
@@ -35,13 +36,13 @@ def convergence(spectral, finite_difference):
                 "$n$": penalization(n),
                 "printed": f"{printed[n]:.6f}" if n in printed else "--",
                 "paper's scheme": f"{float(paper['growth']):.7f}" if paper else "--",
-                r"$\pm$": scientific(float(paper["growth_error"])) if paper else "--",
+                r"$\pm$": scientific(paper["growth_error"], bound=True) if paper else "--",
                 "$v(0,T)/T$": f"{value['growth']:.10f}",
                 r"$\gamma_n^2$": f"{value['gamma2']:.12f}",
                 r"$v(0,T)/T - \gamma_n^2$": scientific(value["offset"], 4),
             }
         )
-    return frame(plain), frame(cells)
+    return pd.DataFrame(plain), pd.DataFrame(cells)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ def growth(scene, time, step, paths, seed, threads):
         From an ensemble independent of the shards'.
     """
     scene = Scene(**scene)
-    change = central_moments(step_bias(scene, time, step, paths, (seed, 1), [time], threads))
+    change = central_moments(step_bias(scene, time, step, paths, (seed, "growth"), [time], threads))
     factor = 1 / (1 - 2 ** -strang.weak_order(scene)) / float(variance(scene, [time])["v"][0])
     return artifact.dataset(
         "Bias of the time step in the growth of the variance",

@@ -4,6 +4,7 @@ from functools import partial
 
 from nonsmooth import artifact, strang
 from nonsmooth.crossing import first_passage_shift
+from nonsmooth.errors import SceneError
 from nonsmooth.jobs import produce
 from nonsmooth.scene import Scene
 
@@ -19,8 +20,13 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
     """
     scene = Scene(**scene)
     count, total, square = first_passage_shift(
-        scene, threshold, horizon, p, step, paths, (seed, 1), threads
+        scene, threshold, horizon, p, step, paths, (seed, f"halving, p = {p}"), threads
     )
+    if not count:
+        raise SceneError(
+            f"no path crosses {threshold} sqrt(p) by {horizon} p at p = {p}; "
+            "lower crossing.threshold or raise crossing.horizon"
+        )
     factor = 1 / (1 - 2 ** -strang.weak_order(scene))
     mean = total / count
     return artifact.dataset(

@@ -20,7 +20,9 @@ def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):
     horizons = horizon / outputs * np.arange(1, outputs + 1)
     first, paths = part
     scene = Scene(**scene)
-    crossed = first_passage_counts(scene, threshold, horizons, p, step, paths, seed, first, threads)
+    crossed = first_passage_counts(
+        scene, threshold, horizons, p, step, paths, (seed, f"p = {p}"), first, threads
+    )
     return artifact.dataset(
         "Numbers of paths that cross the threshold",
         f"{paths} paths from number {first} of {scene}, b = {threshold}, p = {p}",

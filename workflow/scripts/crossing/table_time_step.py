@@ -1,6 +1,8 @@
 """Table of figure 2b's time step bias, standard error and distance to the limit."""
 
-from nonsmooth.tables import frame, scientific, typeset
+import pandas as pd
+
+from nonsmooth.tables import scientific, typeset
 
 
 def time_step(check):
@@ -10,7 +12,7 @@ def time_step(check):
     -------
     plain, cells : pandas.DataFrame
     """
-    plain = check.to_dataframe().reset_index()
+    plain = check.to_datapd.DataFrame().reset_index()
     cells = [
         {
             "$p$": f"${row.p:g}$",
@@ -22,7 +24,7 @@ def time_step(check):
         }
         for row in plain.itertuples()
     ]
-    return plain, frame(cells)
+    return plain, pd.DataFrame(cells)
 
 
 if __name__ == "__main__":

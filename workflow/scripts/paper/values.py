@@ -2,10 +2,12 @@
 
 import json
 
+import tylax
 import yaml
 
 from nonsmooth.files import whole
 from nonsmooth.jobs import inputs, job
+from nonsmooth.tables import scientific
 
 PRINTED = "paper/printed.yaml"
 
@@ -15,6 +17,7 @@ def values(
     monte_carlo,
     agreement,
     crossing,
+    convergence,
     variance,
     sweep,
     horizon,
@@ -28,6 +31,8 @@ def values(
     ----------
     spectral, monte_carlo, agreement, crossing : xarray.Dataset
         The artifacts.
+    convergence : list of xarray.Dataset
+        Spectral solutions of table 4, one per n.
     variance, sweep, trajectories : dict
         Sections of the configuration.
     horizon, scheme
@@ -41,16 +46,17 @@ def values(
     """
     with open(PRINTED, encoding="utf-8") as file:
         printed = yaml.safe_load(file)
-    v, tau = spectral["v"].values, spectral["time"].values
+    tau = spectral["time"].values
     largest = crossing.isel(p=-1)
     return {
         "variance": {
             "n": f"{variance['scene']['n']:g}",
             "gamma2": f"{float(spectral['gamma2']):.15f}",
-            "gamma2_error": _scientific(spectral["gamma2_error"]),
-            "last": f"{v[-1] / tau[-1]:.10f}",
+            "gamma2_error": _scientific(spectral["gamma2_error"], bound=True),
             "horizon": f"{tau[-1]:g}",
-            "spectral_error": _scientific((spectral["v_error"] / spectral["time"]).max()),
+            "spectral_error": _scientific(
+                (spectral["v_error"] / spectral["time"]).max(), bound=True
+            ),
             "paths": f"{int(monte_carlo['paths']):,}",
             "step": f"{variance['monte_carlo']['step']:g}",
             "standard_error": _scientific((monte_carlo["v_error"] / monte_carlo["time"])[-1]),
@@ -77,7 +83,11 @@ def values(
             "standard_error": f"{float(largest['standard_error']):.4f}",
             "ratio": f"{float(largest['distance'] / largest['standard_error']):.0f}",
         },
-        "convergence": {"horizon": f"{horizon:g}"}
+        "convergence": {
+            "horizon": f"{horizon:g}",
+            "growth_error": _scientific(max(r["growth_error"] for r in convergence), bound=True),
+            "gamma2_error": _scientific(max(r["gamma2_error"] for r in convergence), bound=True),
+        }
         | {key: f"{scheme[key]:g}" for key in ("half_width", "nodes", "time_step")},
         "trajectories": {
             "step": f"{trajectories['step']:g}",
@@ -93,9 +103,8 @@ def values(
     }
 
 
-def _scientific(value):
-    mantissa, exponent = f"{float(value):.1e}".split("e")
-    return f"{mantissa} dot 10^({int(exponent)})"
+def _scientific(value, bound=False):
+    return tylax.latex_to_typst(scientific(value, bound=bound).strip("$"))
 
 
 if __name__ == "__main__":

@@ -1,9 +1,10 @@
 """Table 1: variational inequality, convex function, its regularisation and penalty force."""
 
+import pandas as pd
 import sympy
 
 from nonsmooth.models import MODELS, x, y
-from nonsmooth.tables import frame, typeset
+from nonsmooth.tables import typeset
 
 
 def penalties():
@@ -37,7 +38,7 @@ def penalties():
                 "$f_n$": rf"${sympy.latex(sympy.Matrix(force))}$",
             }
         )
-    return frame(plain), frame(cells)
+    return pd.DataFrame(plain), pd.DataFrame(cells)
 
 
 if __name__ == "__main__":

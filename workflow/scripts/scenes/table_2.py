@@ -1,10 +1,11 @@
 """Table 2: drift and diffusion of the extended state for each noise."""
 
+import pandas as pd
 import sympy
 
 from nonsmooth import generic
 from nonsmooth.noises import NOISES
-from nonsmooth.tables import frame, typeset
+from nonsmooth.tables import typeset
 
 
 def equations():
@@ -30,7 +31,7 @@ def equations():
                 r"$\sigma$": f"${sympy.latex(sigma)}$",
             }
         )
-    return frame(plain), frame(cells)
+    return pd.DataFrame(plain), pd.DataFrame(cells)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
 """Table 3: penalty functions and potential of each model."""
 
+import pandas as pd
 import sympy
 
 from nonsmooth.generic import U
 from nonsmooth.models import MODELS, x
-from nonsmooth.tables import frame, typeset
+from nonsmooth.tables import typeset
 
 
 def forces():
@@ -33,7 +34,7 @@ def forces():
         }
         for row in entries
     ]
-    return frame(plain), frame(cells)
+    return pd.DataFrame(plain), pd.DataFrame(cells)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,8 @@ FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although noth
 def deviations(spectral, finite_difference, monte_carlo):
     """Compare at every plotted tau; deviations are in units of what is allowed.
 
+    Nor may the time step's bias be significantly above the standard error.
+
     Allowed is, for the finite differences, the sum of both error bounds; for Monte Carlo, z
     standard errors (of the sample and of the bias estimate together) after removal of the
     estimated bias, z from the false-alarm rate by Bonferroni over the tau.
@@ -47,6 +49,11 @@ def deviations(spectral, finite_difference, monte_carlo):
                 f"{name} deviates from the spectral elements by {deviation[worst]:.2f} times its "
                 f"allowed error at tau = {tau[worst]:g}; refine it or look for a mistake"
             )
+    bias, bias_error = np.abs(monte_carlo["bias"].values), monte_carlo["bias_error"].values
+    if np.any(bias - z * bias_error > monte_carlo["v_error"].values):
+        raise CheckError(
+            "the time step's bias is above the standard error; reduce variance.monte_carlo.step"
+        )
     return artifact.dataset(
         "Agreement of the three methods",
         "deviation from the spectral elements divided by the allowed error; all at most 1",

@@ -19,7 +19,9 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
     """
     scene = Scene(**scene)
     tau = times.logarithmic(first_time, horizon, points)
-    change = central_moments(step_bias(scene, horizon, step, paths, (seed, 1), tau, threads))
+    change = central_moments(
+        step_bias(scene, horizon, step, paths, (seed, "halving"), tau, threads)
+    )
     factor = 1 / (1 - 2 ** -strang.weak_order(scene))
     return artifact.dataset(
         "Bias of the time step in the variance of the integrated observable",

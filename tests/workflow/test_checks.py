@@ -1,0 +1,89 @@
+"""The checks of the workflow fail when results contradict each other."""
+
+import runpy
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import ROOT
+
+from nonsmooth.errors import CheckError
+
+TAU = np.array([0.1, 1.0, 10.0])
+SCRIPTS = ROOT / "workflow" / "scripts"
+deviations = runpy.run_path(str(SCRIPTS / "variance" / "check.py"))["deviations"]
+compare = runpy.run_path(str(SCRIPTS / "crossing" / "check.py"))["compare"]
+
+
+def three_methods(**changes):
+    """Artifacts of figure 2a that agree, but for changes to Monte Carlo or finite differences."""
+    v = 0.1 * TAU
+    monte_carlo = {"v": v + 1e-4, "v_error": 1e-4, "bias": 5e-5, "bias_error": 1e-5}
+    monte_carlo |= {k: c for k, c in changes.items() if k in monte_carlo}
+    difference = {"v": v + changes.get("shift", 1e-6), "v_error": 2e-6}
+    return [
+        xr.Dataset(
+            {k: ("time", np.broadcast_to(c, 3).astype(float)) for k, c in values.items()},
+            coords={"time": TAU},
+        )
+        for values in ({"v": v, "v_error": 1e-12}, difference, monte_carlo)
+    ]
+
+
+def test_agreement_passes():
+    """Deviations in units of the allowed error are at most one."""
+    result = deviations(*three_methods())
+    assert float(result["monte_carlo"].max()) < 1
+    assert float(result["finite_difference"].max()) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"shift": 3e-6}, "finite_difference deviates"),
+        ({"v": 0.1 * TAU + [0, 0, 7e-4]}, r"monte_carlo deviates .* at tau = 10"),
+        ({"v": 0.1 * TAU + np.nan}, "monte_carlo deviates"),
+        ({"v": 0.1 * TAU + 3e-4, "bias": 3e-4}, "bias is above the standard error"),
+    ],
+)
+def test_contradictions_fail(changes, message):
+    """Each method, a value that is not a number, and a bias that dominates."""
+    with pytest.raises(CheckError, match=message):
+        deviations(*three_methods(**changes))
+
+
+def crossings(bias=5e-4, bias_error=4e-4, growth=1e-3):
+    """Artifacts of figure 2b for p = 10 and 1000."""
+    horizon = {"horizon": [1.0, 2.0]}
+    run = {
+        "probability": ("horizon", [0.2, 0.5]),
+        "probability_error": ("horizon", [1e-3, 1.6e-3]),
+        "slope": 0.45,
+        "bias": bias,
+        "bias_error": bias_error,
+    }
+    limit = xr.Dataset({"probability": ("horizon", [0.21, 0.52])}, coords=horizon)
+    rate = xr.Dataset({"bias": growth, "bias_error": 2e-4})
+    runs = [xr.Dataset(run, coords=horizon | {"p": p}) for p in (1000.0, 10.0)]
+    return runs, limit, rate
+
+
+def test_small_bias_passes_and_is_sorted_by_p():
+    """The distance to the limit is the largest over T."""
+    result = compare(*crossings())
+    assert list(result["p"]) == [10.0, 1000.0]
+    assert np.allclose(result["distance"], 0.02)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"growth": 4e-3}, "not below the standard error"),
+        ({"bias": 8e-3, "growth": 1.5e-3}, "contradict"),
+        ({"bias": -8e-3}, "contradict"),
+    ],
+)
+def test_large_bias_fails(changes, message):
+    """By the precise measurement or by the direct one."""
+    with pytest.raises(CheckError, match=message):
+        compare(*crossings(**changes))
