@@ -12,7 +12,7 @@ def time_step(check):
     -------
     plain, cells : pandas.DataFrame
     """
-    plain = check.to_datapd.DataFrame().reset_index()
+    plain = check.to_dataframe().reset_index()
     cells = [
         {
             "$p$": f"${row.p:g}$",
