@@ -23,7 +23,7 @@ def growth(spectral, finite_difference, monte_carlo, check):
     )
     paths = int(monte_carlo["paths"])
     top.plot(tau, estimate / tau, "--", color=BLUE, label=f"Monte Carlo, {paths:,} paths")
-    top.plot(tau, v / tau, color=ORANGE, label="spectral elements", zorder=1)
+    top.plot(tau, v / tau, color=ORANGE, linewidth=2.2, label="spectral elements", zorder=1)
     sparse = slice(None, None, 4)
     top.plot(
         tau[sparse],
