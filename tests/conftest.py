@@ -15,6 +15,7 @@ TRACKED = (
     "workflow",
     "src",
     "paper",
+    "profiles",
     "environment-lock.txt",
     "pyproject.toml",
 )
