@@ -54,7 +54,7 @@ PUBLISHED = {
 @pytest.mark.parametrize("n", PUBLISHED)
 def test_published_growth(n):
     """v(0, 100)/100 to the eight digits known from an independent computation."""
-    v = ns.variance(ns.Scene("friction", n=n), [100.0], tol=2e-11)["v"][0] / 100
+    v = ns.variance(ns.Scene("friction", n=n), [100.0], tol=4e-11)["v"][0] / 100
     assert float(v) == pytest.approx(PUBLISHED[n], abs=5.1e-9)
 
 
@@ -80,7 +80,10 @@ def test_poisson_solution_against_closed_form(n, damping):
     scene = ns.Scene("friction", n=n, damping=damping)
     closed = ns.asymptotic_variance(scene)
     assert closed.method == "closed form"
-    assert spectral.asymptotic_variance(scene, 14) == pytest.approx(closed.value, rel=1e-9)
+    # converged at this degree, so that rounding is all that is left
+    assert spectral.asymptotic_variance(scene, 14) == pytest.approx(
+        closed.value, rel=spectral.rounding(scene, 14), abs=closed.error
+    )
 
 
 def test_forcing_balance():

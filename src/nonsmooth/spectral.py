@@ -13,6 +13,7 @@ import numpy as np
 import scipy.linalg
 import sympy
 from numpy.polynomial import legendre
+from scipy.special import roots_jacobi
 
 from nonsmooth import models
 from nonsmooth.errors import SceneError
@@ -96,7 +97,7 @@ def mesh(scene):
 @lru_cache(maxsize=8)
 def _reference_element(degree):
     """Lagrange basis on the Gauss-Lobatto nodes at over-integrating Gauss points."""
-    inner = legendre.legroots(legendre.legder([0] * degree + [1]))
+    inner, _ = roots_jacobi(degree - 1, 1, 1)  # the zeros of the Legendre polynomial's slope
     nodes = np.concatenate([[-1.0], inner, [1.0]])
     points, weights = legendre.leggauss(degree + 16)
     to_modes = np.linalg.inv(legendre.legvander(nodes, degree))
@@ -136,7 +137,9 @@ def assemble(scene, degree):
         weight = weights * half * np.exp(-depth(at))
         mass[here, here] += values.T @ (weight[:, None] * values)
         observable[here, here] += values.T @ ((weight * g(at))[:, None] * values)
-        stiffness[here, here] += slopes.T @ ((weight / half**2)[:, None] * slopes)
+        local = slopes.T @ ((weight / half**2)[:, None] * slopes)
+        # constants have no energy: enforced, or rounding of the smallest elements costs digits
+        stiffness[here, here] += local - np.diag(local.sum(axis=1))
     total = mass.sum()
     factor = scene.noise.sigma**2 / 2
     return where, mass / total, factor * stiffness / total, observable / total
@@ -184,10 +187,12 @@ def rounding(scene, degree):
     """Bound on the relative rounding error of all results.
 
     The stiffness matrix, of size degree^2 / width, is applied to smooth functions, for which its
-    entries cancel; the natural length of the state is C_b^(-1/2).
+    entries cancel; the natural length of the state is C_b^(-1/2). The law is this reasoning, its
+    factor 4 experience: against the closed form, over n = 100 ... 1e6 and C_b = 0.2 ... 5, the
+    error came to at most twice eps degree^2 / width.
     """
     width = np.min(np.diff(mesh(scene))) * np.sqrt(scene.damping)
-    return np.finfo(float).eps * degree**2 * max(1.0, 1 / width)
+    return 4 * np.finfo(float).eps * degree**2 * max(1.0, 1 / width)
 
 
 def asymptotic_variance(scene, degree):
