@@ -89,10 +89,10 @@ def variance(scene, times, tol=1e-9):
     scale = tol * np.where(times > 0, times, 1.0)
     (w, v), (w_error, v_error) = _refine(
         lambda degree: np.array(spectral.moments(scene, times, degree)),
-        # w is the difference of terms as large as the standard deviation
+        # w is the difference of terms as large as the standard deviation, v of E Delta^2 and w^2
         lambda degree, wv: (
             spectral.rounding(scene, degree)
-            * np.array([np.abs(wv[0]) + np.sqrt(np.abs(wv[1])), np.abs(wv[1])])
+            * np.array([np.abs(wv[0]) + np.sqrt(np.abs(wv[1])), np.abs(wv[1]) + wv[0] ** 2])
         ),
         lambda wv: np.array([np.full_like(times, np.inf), scale]),
     )
