@@ -37,4 +37,9 @@ def sources(script):
             named |= {alias.name for alias in node.names}
     direct = {name for name in named if name in _graph().modules and name != PACKAGE}
     needed = direct.union(*(_graph().find_upstream_modules(name) for name in direct)) - {PACKAGE}
-    return sorted(f"src/{name.replace('.', '/')}.py" for name in needed)
+    return sorted(map(_file, needed))
+
+
+def _file(module):
+    path = Path("src", *module.split("."))
+    return str(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))

@@ -1,94 +1,39 @@
 """Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b)."""
 
-import math
-
 import numpy as np
 import xarray as xr
-from scipy.special import betainccinv, betaincinv
+from scipy import stats
 
-from nonsmooth import spectral
-from nonsmooth import strang as splitting
+from nonsmooth import schemes
 from nonsmooth.brownian import brownian_crossing
 from nonsmooth.errors import SceneError
-from nonsmooth.kernels import kernel
-from nonsmooth.streams import blocks, generator
-from nonsmooth.trajectories import initial_state, parallel, require_finite, require_positive
-from nonsmooth.variance import asymptotic_variance
+from nonsmooth.march import march
+from nonsmooth.panel import TOTAL_DELTA, new_panel
+from nonsmooth.streams import blocks
+from nonsmooth.times import equal_steps
+from nonsmooth.trajectories import coupled, parallel, require_finite, require_positive
+from nonsmooth.variance import asymptotic_variance, stationary_mean
 
-
-@kernel
-def _first_passage(rng, s, start, threshold, outputs, steps_per_output, crossed):
-    """Count in `crossed` the paths by the output interval in which |Delta| reaches the threshold.
-
-    A path is dropped as soon as it has crossed. Returns nan if a path diverged, else 0.
-    """
-    remainder = 0.0
-    for i in range(start.shape[1]):
-        zeta, eta, y, x = start[0, i], start[1, i], start[2, i], start[3, i]
-        delta = 0.0
-        before = splitting.observe(s, zeta, eta, y, x)
-        for k in range(outputs * steps_per_output):
-            kick = splitting.increments(s, rng)
-            zeta, eta, y, x = splitting.advance(s, zeta, eta, y, x, kick)
-            after = splitting.observe(s, zeta, eta, y, x)
-            delta += 0.5 * s.step * (before + after)
-            before = after
-            if abs(delta) >= threshold:
-                crossed[k // steps_per_output] += 1
-                break
-        remainder += 0.0 * delta
-    return remainder
-
-
-@kernel
-def _first_passage_pair(rng, fine, coarse, start, threshold, steps, sums):
-    """Add to `sums` the powers 0 to 2 of log(time with step h / time with step h/2).
-
-    Both steps run on the same noise; first-passage times are interpolated within their step.
-    """
-    for i in range(start.shape[1]):
-        a, b, c, d = start[0, i], start[1, i], start[2, i], start[3, i]
-        zeta, eta, y, x = a, b, c, d
-        g_coarse = splitting.observe(coarse, a, b, c, d)
-        g_fine = g_coarse
-        delta_coarse = delta_fine = 0.0
-        time_coarse = time_fine = 0.0
-        for k in range(steps):
-            early = splitting.increments(fine, rng)
-            late = splitting.increments(fine, rng)
-            kick = early
-            for part in range(2):
-                if part == 1:
-                    kick = late
-                zeta, eta, y, x = splitting.advance(fine, zeta, eta, y, x, kick)
-                after = splitting.observe(fine, zeta, eta, y, x)
-                before = abs(delta_fine)
-                delta_fine += 0.5 * fine.step * (g_fine + after)
-                g_fine = after
-                if time_fine == 0.0 and abs(delta_fine) >= threshold:
-                    part_done = (threshold - before) / (abs(delta_fine) - before)
-                    time_fine = (2 * k + part + part_done) * fine.step
-            kick = splitting.join(fine, early, late)
-            a, b, c, d = splitting.advance(coarse, a, b, c, d, kick)
-            after = splitting.observe(coarse, a, b, c, d)
-            before = abs(delta_coarse)
-            delta_coarse += 0.5 * coarse.step * (g_coarse + after)
-            g_coarse = after
-            if time_coarse == 0.0 and abs(delta_coarse) >= threshold:
-                part_done = (threshold - before) / (abs(delta_coarse) - before)
-                time_coarse = (k + part_done) * coarse.step
-            if time_coarse > 0.0 and time_fine > 0.0:
-                ratio = math.log(time_coarse / time_fine)
-                sums[0] += 1.0
-                sums[1] += ratio
-                sums[2] += ratio**2
-                break
+_LONGEST_STEP = 0.1  # times the smaller of 1 and 1/C_b
+_PILOT_PATHS = 4096
 
 
 def first_passage_counts(
-    scene, threshold, horizons, p, step, paths, seed, first_path=0, threads=None
+    scene,
+    threshold,
+    horizons,
+    p,
+    step,
+    paths,
+    seed,
+    first_path=0,
+    threads=None,
+    scheme="strang",
+    precision="float32",
 ):
     """Count the paths that cross sqrt(p) b in each interval between the horizons p T.
+
+    A path is dropped once it has crossed.
 
     Parameters
     ----------
@@ -96,37 +41,58 @@ def first_passage_counts(
     threshold : float
         b, "1".
     horizons : array_like, shape (k,)
-        Equidistant T, starting at their spacing, "1".
+        Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem.
     step : float
-        Longest time step, "1"; the step is shortened to divide the spacing of p T.
-    paths, seed, first_path, threads
-        As for `simulate`.
+        Longest time step, "1"; it is shortened to divide the intervals of p T.
+    paths, seed, first_path, threads, scheme, precision
+        As for `trajectories.gram`.
 
     Returns
     -------
     numpy.ndarray of int, shape (k,)
     """
-    horizons, steps = _steps_per_output(horizons, p, step)
-    scheme = splitting.strang(scene, p * horizons[0] / steps)
+    grid = [
+        (steps, schemes.coefficients(scene, scheme, h, precision))
+        for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), step)
+    ]
 
     def run(job):
-        block, count = job
-        crossed = np.zeros(len(horizons), dtype=np.int64)
-        remainder = _first_passage(
-            generator(scene, seed, block),
-            scheme,
-            initial_state(scene, count),
-            np.sqrt(p) * threshold,
-            len(horizons),
-            steps,
-            crossed,
-        )
-        require_finite([remainder])
-        return crossed
+        block, lanes = job
+        panel = new_panel(scene, seed, block, precision)
+        left = [lanes]
+        for steps, s in grid:
+            left.append(march(s, panel, left[-1], steps, np.sqrt(p) * threshold))
+        # a path that diverges never crosses
+        require_finite([panel.total[TOTAL_DELTA, : left[-1]]])
+        return -np.diff(left)
 
     return sum(parallel(run, blocks(first_path, paths), threads))
+
+
+def first_passage_bias(scene, threshold, horizons, p, step, paths, seed, threads=None):
+    """Measure what halving the time step changes in the crossing probability.
+
+    Parameters
+    ----------
+    scene, threshold, horizons, p, paths, seed, threads
+        As for `first_passage_counts`.
+    step : float
+        The longer of the two steps, "1".
+
+    Returns
+    -------
+    bias, error : numpy.ndarray, shape (k,)
+        Of the probability with the longer step, with its standard error.
+    """
+    times = p * np.asarray(horizons, dtype=float)
+    _, (fine, coarse) = coupled(scene, times, step, paths, seed, threads, np.sqrt(p) * threshold)
+    change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
+    factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
+    # where no path changed sides, as if one had
+    error = np.sqrt(np.maximum(change.var(axis=0), 1 / paths) / paths)
+    return factor * change.mean(axis=0), factor * error
 
 
 def first_passage_shift(scene, threshold, horizon, p, step, paths, seed, threads=None):
@@ -146,27 +112,20 @@ def first_passage_shift(scene, threshold, horizon, p, step, paths, seed, threads
     numpy.ndarray, shape (3,)
         Sums over the paths of the powers 0 to 2 of log(time with step / time with step/2).
     """
-    fine, coarse = splitting.strang(scene, step / 2), splitting.strang(scene, step)
-
-    def run(job):
-        block, count = job
-        sums = np.zeros(3)
-        _first_passage_pair(
-            generator(scene, seed, block),
-            fine,
-            coarse,
-            initial_state(scene, count),
-            np.sqrt(p) * threshold,
-            int(np.ceil(p * horizon / step)),
-            sums,
-        )
-        return sums
-
-    return sum(parallel(run, blocks(0, paths), threads))
+    _, (fine, coarse) = coupled(
+        scene, [p * horizon], step, paths, seed, threads, np.sqrt(p) * threshold
+    )
+    both = np.isfinite(fine) & np.isfinite(coarse)
+    ratio = np.log(coarse[both] / fine[both])
+    return np.array([len(ratio), ratio.sum(), np.sum(ratio**2)])
 
 
 def proportion(successes, trials, level=0.95):
-    """Estimate a probability with its exact (Clopper-Pearson) confidence interval.
+    """Estimate a probability with a confidence interval that holds down to rare events.
+
+    The interval is Jeffreys' (Brown, Cai and DasGupta, Statist. Sci. 16, 2001), the quantiles of
+    the beta law of the counts plus one half; its limits are 0 and 1 where nothing or everything
+    was counted.
 
     Parameters
     ----------
@@ -179,17 +138,24 @@ def proportion(successes, trials, level=0.95):
     estimate, lower, upper : numpy.ndarray
     """
     successes, trials = np.broadcast_arrays(successes, trials)
-    tail = (1 - level) / 2
-    with np.errstate(invalid="ignore"):
-        lower = betaincinv(successes, trials - successes + 1, tail)
-        upper = betainccinv(successes + 1, trials - successes, tail)
-    lower = np.where(successes == 0, 0.0, lower)
-    upper = np.where(successes == trials, 1.0, upper)
+    law = stats.beta(successes + 0.5, trials - successes + 0.5)
+    lower = np.where(successes == 0, 0.0, law.ppf((1 - level) / 2))
+    upper = np.where(successes == trials, 1.0, law.isf((1 - level) / 2))
     return successes / trials, lower, upper
 
 
 def crossing_probability(
-    scene, threshold, horizons, p=1.0, method="monte_carlo", step=0.02, paths=100_000, seed=0
+    scene,
+    threshold,
+    horizons,
+    p=1.0,
+    method="monte_carlo",
+    tol=1e-2,
+    step=None,
+    paths=None,
+    seed=0,
+    precision="float32",
+    threads=None,
 ):
     """Probability that |int_0^t g| reaches sqrt(p) b before p T.
 
@@ -199,36 +165,68 @@ def crossing_probability(
     threshold : float
         b > 0, "1".
     horizons : array_like, shape (k,)
-        T, "1"; for ``"monte_carlo"`` equidistant, starting at their spacing.
+        Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem, > 0.
     method : {"monte_carlo", "asymptotic"}
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent).
-    step, paths, seed
-        Time step, number of paths and seed of ``"monte_carlo"``.
+    tol : float
+        Absolute error wanted of ``"monte_carlo"``: it decides, unless given, on the number of
+        paths (two standard errors are at most `tol`) and on the time step (its bias is half).
+    step : float, optional
+        Longest time step, "1".
+    paths : int, optional
+        Number of paths.
+    seed : int or tuple
+    precision : {"float32", "float64"}
+    threads : int, optional
+        All cores unless given.
 
     Returns
     -------
     xarray.Dataset
         Over `horizon`: `probability` and `probability_error`, for ``"monte_carlo"`` the
-        standard error and the 95 % confidence limits `lower` and `upper`; for ``"asymptotic"``
-        the error inherited from gamma^2 only, not the distance to the finite-p probability.
+        standard error, with the 95 % confidence limits `lower` and `upper`, and `step_bias`, the
+        bias of the time step as measured by halving it, with its standard error
+        `step_bias_error`; for ``"asymptotic"`` the error inherited from gamma^2 only, not the
+        distance to the finite-p probability.
 
     Raises
     ------
     SceneError
-        If a parameter is out of range or the method unknown.
+        If a parameter is out of range or the method unknown, or if the asymptotic formula is
+        asked for a g whose stationary mean is not 0.
     """
-    for name, value in (("threshold", threshold), ("p", p), ("step", step), ("paths", paths)):
+    for name, value in (("threshold", threshold), ("p", p), ("tol", tol)):
         require_positive(name, value)
     horizons = np.atleast_1d(np.asarray(horizons, dtype=float))
+    if not (horizons[0] > 0 and np.all(np.diff(horizons) > 0)):
+        raise SceneError("the horizons must be positive and increase; sort them")
+    attributes = {}
     if method == "monte_carlo":
-        crossed = first_passage_counts(scene, threshold, horizons, p, step, paths, seed)
+        paths = int(np.ceil(1 / tol**2)) if paths is None else paths
+        require_positive("paths", paths)
+        fewer = min(paths, max(_PILOT_PATHS, paths // 8))
+        problem = (scene, threshold, horizons, p)
+        if step is None:
+            step = _LONGEST_STEP * min(1.0, 1 / scene.damping)
+            bias, error = first_passage_bias(*problem, step, fewer, (seed, "pilot"), threads)
+            order = schemes.scheme(scene, "strang").weak_order(scene)
+            worst = np.max(np.abs(bias) + error)
+            step = float(step * min(1.0, (tol / 2 / worst) ** (1 / order)))
+        require_positive("step", step)
+        crossed = first_passage_counts(
+            *problem, step, paths, seed, threads=threads, precision=precision
+        )
         values = crossing_estimate(np.cumsum(crossed), paths)
+        values["step_bias"], values["step_bias_error"] = first_passage_bias(
+            *problem, step, fewer, (seed, "halving"), threads
+        )
+        attributes = {"step": step, "paths": paths}
     elif method == "asymptotic":
+        mean, uncertainty = stationary_mean(scene)
         gamma2 = asymptotic_variance(scene)
-        mean = spectral.mean(scene)
-        if abs(mean) > 1e-8 * np.sqrt(gamma2.value):
+        if abs(mean) > max(1e-8 * np.sqrt(gamma2.value), 5 * uncertainty):
             raise SceneError(
                 f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
                 f"{mean:.10g}; subtract it from g"
@@ -243,7 +241,9 @@ def crossing_probability(
     else:
         raise SceneError(f"unknown method {method!r}; choose 'monte_carlo' or 'asymptotic'")
     return xr.Dataset(
-        {name: ("horizon", value) for name, value in values.items()}, coords={"horizon": horizons}
+        {name: ("horizon", value) for name, value in values.items()},
+        coords={"horizon": horizons},
+        attrs=attributes,
     )
 
 
@@ -265,14 +265,3 @@ def asymptotic_crossing(threshold, horizons, variance, variance_error):
         for shift in (0.0, -variance_error, variance_error)
     )
     return value, np.maximum(np.abs(above - value), np.abs(value - below)) + 4e-16
-
-
-def _steps_per_output(horizons, p, step):
-    horizons = np.asarray(horizons, dtype=float)
-    require_positive("first horizon", horizons[0])
-    if not np.allclose(horizons, horizons[0] * np.arange(1, len(horizons) + 1), rtol=1e-9):
-        raise SceneError(
-            "Monte Carlo needs horizons k*spacing, k = 1, 2, ...; "
-            "use numpy.linspace(0, T, k + 1)[1:]"
-        )
-    return horizons, max(1, int(np.ceil(p * horizons[0] / step - 1e-9)))

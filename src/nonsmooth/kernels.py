@@ -10,20 +10,20 @@ from pathlib import Path
 import numba
 
 _PACKAGE = Path(__file__).parent
-_DIGEST = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(_PACKAGE.glob("*.py"))))
+_DIGEST = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(_PACKAGE.rglob("*.py"))))
 _CACHE = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
 
 
-def kernel(function, inline="never"):
+def kernel(function):
     """Compile a function to machine code when it is first called."""
     # the folder is read at decoration; other users of numba keep theirs
     elsewhere, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _CACHE
     try:
-        return numba.njit(function, cache=True, nogil=True, error_model="numpy", inline=inline)
+        return numba.njit(function, cache=True, nogil=True, error_model="numpy")
     finally:
         numba.config.CACHE_DIR = elsewhere
 
 
 def inlined(function):
-    """Compile a function into its callers, which is worth it for what a time step consists of."""
-    return kernel(function, inline="always")
+    """Compile a function into its callers: a loop over lanes vectorises only without calls."""
+    return numba.njit(function, forceinline=True, nogil=True, error_model="numpy")

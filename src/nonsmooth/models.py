@@ -44,6 +44,8 @@ class Model:
         The variable whose penalty it is.
     equation : sympy.Symbol
         The equation of motion in which the penalty force stands.
+    force_name : str
+        What the penalty force is called, as an observable.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Model:
     penalty: Penalty
     argument: sympy.Symbol
     equation: sympy.Symbol
+    force_name: str
 
     @property
     def penalty_force(self):
@@ -94,6 +97,7 @@ ELASTO_PLASTIC = Model(
     penalty=BARRIER,
     argument=x,
     equation=x,
+    force_name="plastic_strain_rate",
 )
 FRICTION = Model(
     name="friction",
@@ -102,6 +106,7 @@ FRICTION = Model(
     penalty=ABSOLUTE_VALUE,
     argument=y,
     equation=y,
+    force_name="friction_force",
 )
 OBSTACLE = Model(
     name="obstacle",
@@ -110,5 +115,6 @@ OBSTACLE = Model(
     penalty=BARRIER,
     argument=x,
     equation=y,
+    force_name="contact_force",
 )
 MODELS = {model.name: model for model in (ELASTO_PLASTIC, FRICTION, OBSTACLE)}

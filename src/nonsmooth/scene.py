@@ -31,7 +31,8 @@ class Scene:
     potential : str
         U, a formula in ``x``.
     observable : str
-        g, a formula in ``zeta, eta, y, x``.
+        g, a formula in ``zeta, eta, y, x``, or the penalty force by its name in the model:
+        ``"plastic_strain_rate"``, ``"friction_force"``, ``"contact_force"``.
     start : dict
         Initial values of the state variables; those not named start at 0.
 
@@ -81,7 +82,7 @@ class Scene:
                 f"at n = inf the displacement is confined to [-1, 1], but it starts at "
                 f"{self.start['x']}; start inside or choose a finite n"
             )
-        unknown = self.observable_expression.free_symbols - set(self.variables)
+        unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
         if unknown:
             raise SceneError(
                 f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
@@ -123,8 +124,15 @@ class Scene:
 
     @cached_property
     def observable_expression(self):
-        """The observable g, a sympy expression."""
+        """The observable g, a sympy expression; with n in it if it is the penalty force."""
+        if self.observes_penalty_force:
+            return self.mechanics.penalty_force
         return parse(self.observable, STATE_VARIABLES)
+
+    @property
+    def observes_penalty_force(self):
+        """Whether g is phi_n', the built-in observable named after what it is in the model."""
+        return self.observable == self.mechanics.force_name
 
     @cached_property
     def drift(self):
@@ -139,7 +147,7 @@ class Scene:
 
         The observable's variables, closed under "the drift of one contains the other".
         """
-        needed = set(self.observable_expression.free_symbols)
+        needed = self.observable_expression.free_symbols & set(self.variables)
         while True:
             grown = needed.union(
                 *(self.drift[s].free_symbols & set(self.variables) for s in needed)
@@ -147,6 +155,16 @@ class Scene:
             if grown == needed:
                 return tuple(s.name for s in STATE_VARIABLES if s in needed)
             needed = grown
+
+    def is_odd(self):
+        """Whether g and the drift change sign with the state, so that E g = 0 by symmetry."""
+        mirrored = {s: -s for s in self.variables}
+        odd = [self.observable_expression]
+        odd += [self.drift[s] for s in self.variables if s.name in self.state]
+        return all(
+            sympy.simplify(sympy.piecewise_fold(f + f.subs(mirrored, simultaneous=True))) == 0
+            for f in odd
+        )
 
     def numerical_drift(self):
         """Return `drift` with the scene's numbers in the place of n and C_b.
@@ -158,8 +176,16 @@ class Scene:
         """
         if self.n == float("inf"):
             raise SceneError("the non-smooth limit n = inf has no drift; choose a finite n")
-        numbers = {penalization: sympy.Float(self.n), models.damping: sympy.Float(self.damping)}
-        return {s: expression.subs(numbers) for s, expression in self.drift.items()}
+        return {s: self._with_numbers(expression) for s, expression in self.drift.items()}
+
+    def numerical_observable(self):
+        """Return `observable_expression` with the scene's n."""
+        return self._with_numbers(self.observable_expression)
+
+    def _with_numbers(self, expression):
+        return expression.subs(
+            {penalization: sympy.Float(self.n), models.damping: sympy.Float(self.damping)}
+        )
 
 
 def _require_known(what, name, known):

@@ -1,20 +1,31 @@
 """Random streams: one per fixed-size block of paths, derived from (seed, scene, block).
 
+The generator is xoshiro128++ 1.0 (D. Blackman, S. Vigna, ACM Trans. Math. Softw. 47, 2021):
+128 bits of state and 32 bits per draw, which is what the lanes of a vector register hold. Each
+path has a generator of its own, seeded with 128 bits of numpy's SeedSequence. Two draws become
+two normal numbers (Box and Muller 1958). A radius has a resolution of 2^-32, so that normals
+reach 6.66 standard deviations.
+
 The penalization n does not enter: scenes that differ only in n are driven by the same noise.
 """
 
 import hashlib
+import math
 from numbers import Integral
 
 import numpy as np
 
+from nonsmooth import elementary
+from nonsmooth.elementary import fma, like
 from nonsmooth.errors import SceneError
+from nonsmooth.kernels import inlined
 
-BLOCK = 5_000  # paths per stream; changing it changes every Monte Carlo result
+BLOCK = 1024  # paths per stream; changing it changes every Monte Carlo result
+_U = np.uint32
 
 
-def generator(scene, seed, block):
-    """Return the generator of one block of paths.
+def generator_words(scene, seed, block):
+    """Return the initial states of the generators of one block of paths.
 
     Parameters
     ----------
@@ -26,8 +37,7 @@ def generator(scene, seed, block):
 
     Returns
     -------
-    numpy.random.Generator
-        SFC64, seeded through numpy's SeedSequence.
+    numpy.ndarray of uint32, shape (4, BLOCK)
 
     Raises
     ------
@@ -40,7 +50,7 @@ def generator(scene, seed, block):
     identity = repr((scene.identity, labels)).encode()
     key = int.from_bytes(hashlib.sha256(identity).digest()[:8], "big")
     sequence = np.random.SeedSequence(int(entropy), spawn_key=(key, block))
-    return np.random.Generator(np.random.SFC64(sequence))
+    return np.ascontiguousarray(sequence.generate_state(4 * BLOCK).reshape(BLOCK, 4).T)
 
 
 def blocks(first, count):
@@ -54,3 +64,55 @@ def blocks(first, count):
     if first % BLOCK:
         raise ValueError(f"paths start at a multiple of {BLOCK}, got {first}")
     return [((first + done) // BLOCK, min(BLOCK, count - done)) for done in range(0, count, BLOCK)]
+
+
+@inlined
+def _rotate(word, bits):
+    return _U(_U(word << _U(bits)) | _U(word >> _U(32 - bits)))
+
+
+@inlined
+def draw(a, b, c, d):
+    """Return 32 random bits and the generator's next state."""
+    value = _U(_rotate(_U(a + d), 7) + a)
+    shifted = _U(b << _U(9))
+    c, d = _U(c ^ a), _U(d ^ b)
+    b, a = _U(b ^ c), _U(a ^ d)
+    return value, a, b, _U(c ^ shifted), _rotate(d, 11)
+
+
+@inlined
+def _box_muller(like_this, first, second):
+    """Two independent normal numbers from 64 random bits."""
+    uniform = fma(
+        like(like_this, np.int32(first >> _U(1))),
+        like(like_this, 2.0**-31),
+        like(like_this, 2.0**-32),
+    )
+    radius = math.sqrt(like(like_this, -2.0) * elementary.log(uniform))
+    quadrant = _U(_U(second + _U(1 << 29)) >> _U(30))
+    rest = np.int32(_U(second - _U(quadrant << _U(30))))
+    sine, cosine = elementary.sincos_in_quadrant(
+        quadrant, like(like_this, rest) * like(like_this, 2.0**-31 * math.pi)
+    )
+    return radius * cosine, radius * sine
+
+
+@inlined
+def normals(words, out, lanes):
+    """Fill out[0] and out[1] with independent standard normal numbers, each lane from its own.
+
+    Parameters
+    ----------
+    words : array of uint32, shape (4, l)
+        Generator states, advanced in place.
+    out : array, shape (2 or more, l)
+    lanes : int
+        At most l.
+    """
+    for i in range(lanes):
+        a, b, c, d = words[0, i], words[1, i], words[2, i], words[3, i]
+        first, a, b, c, d = draw(a, b, c, d)
+        second, a, b, c, d = draw(a, b, c, d)
+        words[0, i], words[1, i], words[2, i], words[3, i] = a, b, c, d
+        out[0, i], out[1, i] = _box_muller(out[0, i], first, second)

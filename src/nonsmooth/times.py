@@ -29,7 +29,8 @@ def equal_steps(times, step):
     list of (int, float)
         Number of steps and their length, for each output time.
     """
-    spans = np.diff(np.concatenate([[0.0], times]))
+    times = np.asarray(times, dtype=float)
+    spans = np.diff(times, prepend=0.0)
     longest = np.minimum(step, np.maximum(times / 16, 1e-300))
     counts = np.ceil(spans / longest - 1e-9).astype(int)
     # rounded, so that equal steps are the same number and share their coefficients

@@ -1,4 +1,4 @@
-"""Paths and their moments: `simulate`."""
+"""Paths and the moments of their integrals: `simulate`."""
 
 import os
 from concurrent.futures import ThreadPoolExecutor
@@ -6,60 +6,14 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import xarray as xr
 
-from nonsmooth import strang as splitting
+from nonsmooth import schemes
+from nonsmooth.control import poisson_slope
 from nonsmooth.errors import SceneError
-from nonsmooth.kernels import kernel
+from nonsmooth.march import march, march_pair
 from nonsmooth.models import STATE_VARIABLES
-from nonsmooth.streams import blocks, generator
+from nonsmooth.panel import STATE, TOTAL_DELTA, new_panel
+from nonsmooth.streams import blocks
 from nonsmooth.times import equal_steps
-
-
-@kernel
-def _march(rng, s, state, integral, steps):
-    """Advance every path by `steps` steps; `integral` gains the trapezoidal integral of g."""
-    for i in range(state.shape[1]):
-        zeta, eta, y, x = state[0, i], state[1, i], state[2, i], state[3, i]
-        total = 0.0
-        before = splitting.observe(s, zeta, eta, y, x)
-        for _ in range(steps):
-            kick = splitting.increments(s, rng)
-            zeta, eta, y, x = splitting.advance(s, zeta, eta, y, x, kick)
-            after = splitting.observe(s, zeta, eta, y, x)
-            total += before + after
-            before = after
-        state[0, i], state[1, i], state[2, i], state[3, i] = zeta, eta, y, x
-        integral[i] += 0.5 * s.step * total
-
-
-@kernel
-def _march_pair(rng, fine, coarse, state, integral, steps):
-    """As `_march`, for a coarse path (row 0) and a fine path (row 1) on the same noise."""
-    for i in range(state.shape[2]):
-        a, b, c, d = state[0, 0, i], state[0, 1, i], state[0, 2, i], state[0, 3, i]
-        zeta, eta, y, x = state[1, 0, i], state[1, 1, i], state[1, 2, i], state[1, 3, i]
-        g_coarse = splitting.observe(coarse, a, b, c, d)
-        g_fine = splitting.observe(fine, zeta, eta, y, x)
-        for _ in range(steps):
-            early = splitting.increments(fine, rng)
-            late = splitting.increments(fine, rng)
-            for kick in (early, late):
-                zeta, eta, y, x = splitting.advance(fine, zeta, eta, y, x, kick)
-                after = splitting.observe(fine, zeta, eta, y, x)
-                integral[1, i] += 0.5 * fine.step * (g_fine + after)
-                g_fine = after
-            kick = splitting.join(fine, early, late)
-            a, b, c, d = splitting.advance(coarse, a, b, c, d, kick)
-            after = splitting.observe(coarse, a, b, c, d)
-            integral[0, i] += 0.5 * coarse.step * (g_coarse + after)
-            g_coarse = after
-        state[0, 0, i], state[0, 1, i], state[0, 2, i], state[0, 3, i] = a, b, c, d
-        state[1, 0, i], state[1, 1, i], state[1, 2, i], state[1, 3, i] = zeta, eta, y, x
-
-
-def initial_state(scene, paths):
-    """Return the starting values, shape (4, paths), in the order zeta, eta, y, x."""
-    start = [scene.start.get(symbol.name, 0.0) for symbol in STATE_VARIABLES]
-    return np.repeat(np.array(start, dtype=float)[:, None], paths, axis=1)
 
 
 def parallel(work, jobs, threads=None):
@@ -68,15 +22,211 @@ def parallel(work, jobs, threads=None):
         return list(pool.map(work, jobs))
 
 
-def simulate(
+def gram(
     scene,
-    horizon,
+    times,
     step,
     paths,
     seed,
+    first_path=0,
+    threads=None,
+    scheme="strang",
+    precision="float32",
+    control=True,
+):
+    """Simulate a part of an ensemble and add up what its moments are made of.
+
+    Parameters
+    ----------
+    scene : Scene
+    times : array_like, shape (t,)
+        Increasing output times, "1".
+    step : float
+        Longest time step, "1".
+    paths : int
+        Number of paths.
+    seed : int or tuple
+    first_path : int
+        Number of the first path of this part, a multiple of the block size.
+    threads : int, optional
+    scheme, precision : str
+    control : bool
+        Whether to run the control variate, where there is one.
+
+    Returns
+    -------
+    numpy.ndarray, shape (t, 5, 5)
+        Sums over the paths of the products of (1, D, D^2, M, M^2 - <M>), D = int_0^t g and M
+        its martingale part.
+
+    Raises
+    ------
+    SceneError
+        If a parameter is out of range or a path diverges.
+    """
+    grid = equal_steps(times, step)
+    table = poisson_slope(scene) if control else (1.0, np.zeros(0))
+    coefficients = [schemes.coefficients(scene, scheme, h, precision, *table) for _, h in grid]
+
+    def run(job):
+        block, count = job
+        panel = new_panel(scene, seed, block, precision)
+        products = np.empty((len(grid), 5, 5))
+        vector = np.ones((5, count))
+        for k, ((steps, _), s) in enumerate(zip(grid, coefficients, strict=True)):
+            march(s, panel, count, steps, np.inf)
+            delta, martingale, variation = panel.total[:, :count]
+            with np.errstate(over="ignore", invalid="ignore"):  # refused below
+                vector[1:] = delta, delta**2, martingale, martingale**2 - variation
+                products[k] = vector @ vector.T
+        return products
+
+    results = parallel(run, blocks(first_path, paths), threads)
+    require_finite(results)
+    return sum(results)
+
+
+def paths_at(scene, times, step, paths, seed, scheme="strang"):
+    """Simulate paths in double precision and keep them at the output times.
+
+    Returns
+    -------
+    numpy.ndarray, shape (t + 1, k + 1, paths)
+        The scene's k state variables and D, time 0 included.
+    """
+    rows = [row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in scene.state]
+    grid = equal_steps(times, step)
+
+    def run(job):
+        block, count = job
+        panel = new_panel(scene, seed, block, "float64")
+        kept = [np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]])]
+        for steps, h in grid:
+            march(schemes.coefficients(scene, scheme, h, "float64"), panel, count, steps, np.inf)
+            kept.append(np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]]))
+        return np.array(kept)
+
+    results = parallel(run, blocks(0, paths))
+    require_finite(results)
+    return np.concatenate(results, axis=2)
+
+
+def coupled(scene, times, step, paths, seed, threads=None, threshold=np.inf, scheme="strang"):
+    """Simulate paths with a step and with half of it on the same noise, in double precision.
+
+    Parameters
+    ----------
+    scene, times, paths, seed, threads, scheme
+        As for `gram`.
+    step : float
+        The longer of the two steps, "1".
+    threshold : float
+        Whose first passage by |D| is timed.
+
+    Returns
+    -------
+    change : numpy.ndarray, shape (t, 3, 3)
+        Sums over the paths of the products of (1, D_h - D_h/2, D_h^2 - D_h/2^2).
+    passage : numpy.ndarray, shape (2, paths)
+        First-passage times with step h/2 and h, inf if there is none.
+    """
+    grid = equal_steps(times, step)
+    pairs = [
+        tuple(schemes.coefficients(scene, scheme, length, "float64") for length in (h / 2, h))
+        for _, h in grid
+    ]
+
+    def run(job):
+        block, count = job
+        panel, other = (new_panel(scene, seed, block, "float64") for _ in range(2))
+        passage = np.full((2, count), np.inf)
+        products = np.empty((len(grid), 3, 3))
+        vector = np.ones((3, count))
+        began = 0.0
+        for k, ((steps, h), (fine, coarse)) in enumerate(zip(grid, pairs, strict=True)):
+            given = schemes.on_given_increments(coarse)
+            march_pair(fine, given, panel, other, count, steps, threshold, began, passage)
+            began += steps * h
+            half, whole = panel.total[TOTAL_DELTA, :count], other.total[TOTAL_DELTA, :count]
+            vector[1:] = whole - half, whole**2 - half**2
+            products[k] = vector @ vector.T
+        return products, passage
+
+    results = parallel(run, blocks(0, paths), threads)
+    require_finite([change for change, _ in results])
+    return sum(change for change, _ in results), np.hstack([passage for _, passage in results])
+
+
+def moments(gram):
+    """Mean and variance of D, their standard errors, by regression on the control variates.
+
+    Parameters
+    ----------
+    gram : array_like, shape (t, 5, 5)
+        From `gram`, of all parts of the ensemble together.
+
+    Returns
+    -------
+    dict
+        Arrays over time: `mean`, `mean_error`, `variance`, `variance_error` (standard errors).
+    """
+    gram = np.asarray(gram)
+    paths = gram[:, 0, 0]
+    average = gram[:, 0] / paths[:, None]
+    covariance = gram / paths[:, None, None] - average[:, :, None] * average[:, None, :]
+    result = {name: np.empty(len(gram)) for name in _MOMENTS}
+    for k, (a, c, count) in enumerate(zip(average, covariance, paths, strict=True)):
+        plain = c[1, 1] * count / (count - 1)
+        # to first order the sample variance is the mean of D^2 - 2 E[D] D
+        for name, value, weights in (
+            ("mean", a[1], np.array([0, 1, 0, 0, 0])),
+            ("variance", plain, np.array([0, -2 * a[1], 1, 0, 0])),
+        ):
+            slope = np.linalg.pinv(c[3:, 3:], hermitian=True) @ (c[3:] @ weights)
+            weights = weights - np.concatenate([np.zeros(3), slope])
+            result[name][k] = value - slope @ a[3:]
+            result[f"{name}_error"][k] = np.sqrt(max(weights @ c @ weights, 0.0) / count)
+    return result
+
+
+_MOMENTS = ("mean", "mean_error", "variance", "variance_error")
+
+
+def step_bias(change, mean, order):
+    """Bias of the variance of D by the step, from `coupled`, and its standard error.
+
+    Parameters
+    ----------
+    change : numpy.ndarray, shape (t, 3, 3)
+    mean : array_like, shape (t,)
+        E[D].
+    order : float
+        Weak order q of the scheme: the bias is the change by halving over 1 - 2^-q.
+
+    Returns
+    -------
+    bias, error : numpy.ndarray, shape (t,)
+    """
+    count = change[:, :1, 0]
+    average = change[:, 0] / count
+    covariance = change / count[..., None] - average[:, :, None] * average[:, None, :]
+    weights = np.stack([0 * mean, -2 * mean, 0 * mean + 1], axis=1)
+    factor = 1 / (1 - 2**-order)
+    variance = np.einsum("ti,tij,tj->t", weights, covariance, weights)
+    return factor * np.sum(weights * average, axis=1), factor * np.sqrt(variance / count[:, 0])
+
+
+def simulate(
+    scene,
+    horizon,
+    tol=1e-2,
+    step=None,
+    paths=None,
+    seed=0,
     times=None,
     keep="moments",
-    first_path=0,
+    scheme=None,
+    precision="float32",
     threads=None,
 ):
     """Simulate a scene.
@@ -86,67 +236,89 @@ def simulate(
     scene : Scene
     horizon : float
         Final time, "1".
-    step : float
+    tol : float
+        Relative error wanted of the variance of D = int_0^horizon g: it decides, unless given,
+        on the number of paths (two standard errors are half of it) and on the longest step (its
+        bias is a quarter of it).
+    step : float, optional
         Longest time step, "1".
-    paths : int
+    paths : int, optional
         Number of paths.
     seed : int or tuple
         The same seed gives the same bits whatever the number of threads.
-    times : array_like, shape (k,), optional
+    times : array_like, shape (t,), optional
         Increasing output times in (0, horizon]; 200 equidistant ones unless given.
     keep : {"moments", "paths"}
         Whether to return statistics, in O(1) memory, or the paths at the output times.
-    first_path : int
-        Number of the first path of this part of the ensemble, a multiple of the block size.
+    scheme : str, optional
+        A name in `schemes.SCHEMES`; the most accurate one for the scene unless given.
+    precision : {"float32", "float64"}
+        Arithmetic of the moments' steps; their sums, and kept paths, are in double precision.
     threads : int, optional
         All cores unless given.
 
     Returns
     -------
     xarray.Dataset
-        ``"moments"``: `power_sum` (power, time), the sums over the paths of the powers 0 to 4
-        of Delta(t) = int_0^t g. ``"paths"``: the variables of the scene's state and `delta`,
-        each (path, time), time 0 included.
+        ``"moments"``, over time: `mean` and `variance` of int_0^t g with their standard errors
+        `mean_error`, `variance_error`, and `variance_bias`, the bias of the time step
+        as measured by halving it, with `variance_bias_error`. ``"paths"``: the variables of the
+        scene's state and `delta`, each (path, time), time 0 included. Attributes `step`, `paths`.
 
     Raises
     ------
     SceneError
-        If a parameter is out of range.
+        If a parameter is out of range, or a path diverges.
     """
     if keep not in ("moments", "paths"):
         raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
+    if precision not in ("float32", "float64"):
+        raise SceneError(f"unknown precision {precision!r}; choose 'float32' or 'float64'")
     times = _output_times(horizon, times)
-    require_positive("step", step)
+    require_positive("tol", tol)
+    chosen = schemes.scheme(scene, scheme)
+    paths = int(np.ceil(32 / tol**2)) if paths is None else paths
     require_positive("paths", paths)
-    grid = equal_steps(times, step)
-    schemes = [splitting.strang(scene, h) for _, h in grid]
-    state_rows = [i for i, symbol in enumerate(STATE_VARIABLES) if symbol.name in scene.state]
-    power = np.arange(5)
-
-    def run(job):
-        block, count = job
-        rng = generator(scene, seed, block)
-        state, delta = initial_state(scene, count), np.zeros(count)
-        history = [np.vstack([state[state_rows], delta])] if keep == "paths" else []
-        for (steps, _), scheme in zip(grid, schemes, strict=True):
-            _march(rng, scheme, state, delta, steps)
-            if keep == "paths":
-                history.append(np.vstack([state[state_rows], delta]))
-            else:
-                with np.errstate(over="ignore", invalid="ignore"):  # refused below
-                    history.append(np.sum(delta ** power[:, None], axis=1))
-        return np.array(history)
-
-    results = parallel(run, blocks(first_path, paths), threads)
-    require_finite(results)
-    if keep == "moments":
-        return power_sums(sum(results), times)
-    stacked = np.concatenate(results, axis=2)
-    names = [*scene.state, "delta"]
+    order = chosen.weak_order(scene)
+    if step is None:
+        step = _choose_step(scene, times[-1:], tol / 4, order, seed, threads, scheme)
+    require_positive("step", step)
+    attributes = {"step": step, "paths": paths}
+    if keep == "paths":
+        kept = paths_at(scene, times, step, paths, seed, scheme)
+        return xr.Dataset(
+            {
+                name: (("path", "time"), kept[:, i].T)
+                for i, name in enumerate([*scene.state, "delta"])
+            },
+            coords={"time": np.concatenate([[0.0], times])},
+            attrs=attributes,
+        )
+    found = moments(gram(scene, times, step, paths, seed, 0, threads, scheme, precision=precision))
+    fewer = min(paths, max(_PILOT_PATHS, paths // 8))
+    change, _ = coupled(scene, times, step, fewer, (seed, "halving"), threads, scheme=scheme)
+    found["variance_bias"], found["variance_bias_error"] = step_bias(change, found["mean"], order)
     return xr.Dataset(
-        {name: (("path", "time"), stacked[:, i].T) for i, name in enumerate(names)},
-        coords={"time": np.concatenate([[0.0], times])},
+        {name: ("time", values) for name, values in found.items()},
+        coords={"time": times},
+        attrs=attributes,
     )
+
+
+_LONGEST_STEP = 0.1  # in units of the fastest smooth time scale, 1/C_b or 1
+_PILOT_PATHS = 4096
+
+
+def _choose_step(scene, times, tol, order, seed, threads, scheme):
+    """Find the step whose relative bias of the variance is below `tol`, from a coarse pilot."""
+    step = _LONGEST_STEP * min(1.0, 1 / scene.damping)
+    step = min(step, schemes.scheme(scene, scheme).longest_step(scene) / 2, float(times[-1]) / 16)
+    seed = (seed, "pilot")
+    found = moments(gram(scene, times, step, _PILOT_PATHS, seed, 0, threads, scheme))
+    change, _ = coupled(scene, times, step, _PILOT_PATHS, seed, threads, scheme=scheme)
+    bias, error = step_bias(change, found["mean"], order)
+    worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
+    return float(step * min(1.0, (tol / worst) ** (1 / order)))
 
 
 def require_finite(results):
@@ -161,71 +333,6 @@ def require_finite(results):
             "the simulation diverged: the drift is not confining or too steep for the step; "
             "mend the potentials or choose a smaller step"
         )
-
-
-def step_bias(scene, horizon, step, paths, seed, times=None, threads=None):
-    """Estimate what halving the time step changes in E[Delta(t)^2].
-
-    Both step lengths run on the same Brownian paths, so that the difference has little variance.
-
-    Parameters
-    ----------
-    scene, horizon, step, paths, seed, times, threads
-        As for `simulate`; `step` is the longer of the two steps.
-
-    Returns
-    -------
-    xarray.Dataset
-        `power_sum` (power, time): sums over the paths of the powers 0 to 2 of
-        Delta_h(t)^2 - Delta_{h/2}(t)^2.
-    """
-    times = _output_times(horizon, times)
-    grid = equal_steps(times, step)
-    schemes = [(splitting.strang(scene, h / 2), splitting.strang(scene, h)) for _, h in grid]
-    power = np.arange(3)
-
-    def run(job):
-        block, count = job
-        rng = generator(scene, seed, block)
-        state, delta = np.stack([initial_state(scene, count)] * 2), np.zeros((2, count))
-        history = []
-        for (steps, _), (fine, coarse) in zip(grid, schemes, strict=True):
-            _march_pair(rng, fine, coarse, state, delta, steps)
-            history.append(np.sum((delta[0] ** 2 - delta[1] ** 2) ** power[:, None], axis=1))
-        return np.array(history)
-
-    results = parallel(run, blocks(0, paths), threads)
-    require_finite(results)
-    return power_sums(sum(results), times)
-
-
-def power_sums(sums, times):
-    """Wrap power sums, shape (time, power), into the dataset that shards are merged from."""
-    return xr.Dataset(
-        {"power_sum": (("power", "time"), sums.T)},
-        coords={"power": np.arange(sums.shape[1]), "time": times},
-    )
-
-
-def central_moments(dataset):
-    """Mean, variance and their standard errors from power sums.
-
-    Returns
-    -------
-    dict
-        Arrays over time: `mean`, `mean_error`, and if powers up to 4 are there `variance`
-        (unbiased) and `variance_error`.
-    """
-    sums = dataset["power_sum"].values
-    count = sums[0]
-    raw = sums[1:] / count
-    mean, second = raw[0], raw[1] - raw[0] ** 2
-    result = {"mean": mean, "mean_error": np.sqrt(second / count)}
-    if len(raw) == 4:
-        fourth = raw[3] - 4 * mean * raw[2] + 6 * mean**2 * raw[1] - 3 * mean**4
-        result["variance"] = second * count / (count - 1)
-        result["variance_error"] = np.sqrt((fourth - second**2) / count)
-    return result
 
 
 def _output_times(horizon, times):

@@ -9,34 +9,46 @@ from nonsmooth import models, spectral
 from nonsmooth.closed_form import friction_variance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
+from nonsmooth.growth import growth, growth_bias, integrals
 
 _DEGREES = (8, 12, 16, 20, 24)
 
 
-def asymptotic_variance(scene, tol=1e-10):
+_EXACT, _SAMPLED = 1e-10, 1e-2  # tolerances unless given
+_SETTLED, _HORIZON = 10.0, 110.0  # times between which Monte Carlo takes the slope
+_STEP = 0.02
+
+
+def asymptotic_variance(scene, tol=None, seed=0, threads=None):
     """gamma_g^2 of Theorem thm3: the growth rate of the variance of int_0^t g.
 
     Parameters
     ----------
     scene : Scene
-        With the one-dimensional state y and white noise.
-    tol : float
-        Requested relative error.
+    tol : float, optional
+        Requested relative error; 1e-10 for the state y with white noise, 1e-2 by Monte Carlo
+        unless given.
+    seed : int or tuple
+        Of Monte Carlo.
+    threads : int, optional
+        All cores unless given.
 
     Returns
     -------
     Estimate
-        By closed form for dry friction and g = y, by spectral elements otherwise.
+        By closed form for dry friction and g = y, by spectral elements for the other scenes with
+        the state y and white noise, otherwise by Monte Carlo, whose error is the standard error
+        and the bias of the time step together.
 
     Raises
     ------
-    SceneError
-        If the scene has no deterministic solver.
     ToleranceError
         If `tol` cannot be met; the message has the best value and its error.
     """
     began = time.perf_counter()
-    spectral.potential(scene)  # refuses what is not one-dimensional
+    if not spectral.applies(scene):
+        return _by_monte_carlo(scene, tol or _SAMPLED, seed, threads, began)
+    tol = tol or _EXACT
     if (
         scene.mechanics.velocity_penalty != 0
         and scene.observable_expression == models.y
@@ -51,12 +63,59 @@ def asymptotic_variance(scene, tol=1e-10):
             lambda value: tol * np.abs(value),
         )
         value, error, method = float(value[0]), float(error[0]), "spectral elements"
-    if error > tol * abs(value):
+    _require(error <= tol * abs(value), value, error, tol)
+    return Estimate(value, error, method, time.perf_counter() - began)
+
+
+def stationary_mean(scene):
+    """Stationary mean of g and its error: exact by symmetry or quadrature, else by Monte Carlo.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    value, error : float
+    """
+    if scene.is_odd():
+        return 0.0, 0.0
+    if spectral.applies(scene):
+        return float(spectral.mean(scene)), 0.0
+    times = (_SETTLED, _HORIZON)
+    sample = growth(integrals(scene, times, _STEP, 10_000, (0, "mean")), times)
+    return sample.mean, sample.mean_error
+
+
+def _by_monte_carlo(scene, tol, seed, threads, began):
+    if tol < 1e-4:
+        raise ToleranceError(
+            f"no deterministic solver for the state ({', '.join(scene.state)}) with "
+            f"{scene.noise.title}, and Monte Carlo cannot reach tol = {tol:g}; use tol >= 1e-4"
+        )
+    times = tuple(t * max(1.0, 1 / scene.damping) for t in (_SETTLED, _HORIZON))
+    paths = int(np.ceil(10 / tol**2))  # two standard errors are tol
+    step = _STEP * min(1.0, 1 / scene.damping)
+    for _ in range(4):
+        bias, spread = growth_bias(scene, times, step, max(4096, paths // 16), (seed, "halving"))
+        sample = growth(integrals(scene, times, step, paths, seed, threads=threads), times)
+        error = float(np.sqrt(sample.rate_error**2 + bias**2 + spread**2))
+        if error <= tol * sample.rate:
+            break
+        if sample.rate_error > tol / 2 * sample.rate:
+            paths *= 2
+        if np.hypot(bias, spread) > tol / 2 * sample.rate:
+            step /= 2
+    _require(error <= tol * sample.rate, sample.rate, error, tol)
+    return Estimate(sample.rate, error, "Monte Carlo", time.perf_counter() - began)
+
+
+def _require(met, value, error, tol):
+    if not met:
         raise ToleranceError(
             f"gamma^2 = {value:.16g} has an error of {error:.1e}, above tol = {tol:g} relative; "
             "loosen tol"
         )
-    return Estimate(value, error, method, time.perf_counter() - began)
 
 
 def variance(scene, times, tol=1e-9):

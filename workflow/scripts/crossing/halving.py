@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from nonsmooth import artifact, strang
+from nonsmooth import artifact, schemes
 from nonsmooth.crossing import first_passage_shift
 from nonsmooth.errors import SceneError
 from nonsmooth.jobs import produce
@@ -27,7 +27,7 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
             f"no path crosses {threshold} sqrt(p) by {horizon} p at p = {p}; "
             "lower crossing.threshold or raise crossing.horizon"
         )
-    factor = 1 / (1 - 2 ** -strang.weak_order(scene))
+    factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
     mean = total / count
     return artifact.dataset(
         "Bias of the time step in the first-passage times",

@@ -31,8 +31,8 @@ def merge(shards, halving, p):
     describe = {
         "probability": "probability of crossing sqrt(p) b by p T",
         "probability_error": "standard error of the probability",
-        "lower": "lower 95 % confidence limit (Clopper-Pearson)",
-        "upper": "upper 95 % confidence limit (Clopper-Pearson)",
+        "lower": "lower 95 % confidence limit (Jeffreys)",
+        "upper": "upper 95 % confidence limit (Jeffreys)",
     }
     return artifact.dataset(
         "Threshold crossing probability by Monte Carlo",

@@ -20,7 +20,15 @@ def same_noise(model, potential, damping, n, horizon, step, outputs, seed, path)
     scene = Scene(model=model, potential=potential, damping=damping, observable="x")
     times = horizon / outputs * np.arange(1, outputs + 1)
     runs = [
-        simulate(scene.with_n(k), horizon, step, 1, (seed, path), times=times, keep="paths")
+        simulate(
+            scene.with_n(k),
+            horizon,
+            step=step,
+            paths=1,
+            seed=(seed, path),
+            times=times,
+            keep="paths",
+        )
         for k in n
     ]
     joined = xr.concat(runs, dim="n").isel(path=0)

@@ -4,11 +4,11 @@ from functools import reduce
 
 from nonsmooth import artifact
 from nonsmooth.jobs import produce
-from nonsmooth.trajectories import central_moments
+from nonsmooth.trajectories import moments
 
 
 def merge(shards, halving):
-    """Add up power sums in the order of the shards and estimate v.
+    """Add up the sums in the order of the shards and estimate v.
 
     Parameters
     ----------
@@ -20,18 +20,18 @@ def merge(shards, halving):
     -------
     xarray.Dataset
     """
-    total = reduce(lambda a, b: a + b, (shard["power_sum"] for shard in shards)).to_dataset()
-    moments = central_moments(total)
+    total = reduce(lambda a, b: a + b, (shard["gram"].values for shard in shards))
+    found = moments(total)
     return artifact.dataset(
         "Variance of the integrated observable by Monte Carlo",
         "all shards together; the first: " + shards[0].attrs["summary"],
-        {"time": ("time", total["time"].values, "tau")},
+        {"time": ("time", shards[0]["time"].values, "tau")},
         {
-            "v": ("time", moments["variance"], "variance of int_0^tau g"),
-            "v_error": ("time", moments["variance_error"], "standard error of v"),
+            "v": ("time", found["variance"], "variance of int_0^tau g"),
+            "v_error": ("time", found["variance_error"], "standard error of v"),
             "bias": ("time", halving["bias"].values, "bias of v by the time step"),
             "bias_error": ("time", halving["bias_error"].values, "standard error of the bias"),
-            "paths": ((), total["power_sum"].values[0, 0], "number of paths"),
+            "paths": ((), total[0, 0, 0], "number of paths"),
         },
     )
 

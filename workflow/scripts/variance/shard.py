@@ -1,11 +1,11 @@
-"""One shard of figure 2a's Monte Carlo: power sums of int_0^tau g."""
+"""One shard of figure 2a's Monte Carlo: sums over its paths."""
 
 from functools import partial
 
 from nonsmooth import artifact, times
 from nonsmooth.jobs import produce
 from nonsmooth.scene import Scene
-from nonsmooth.trajectories import simulate
+from nonsmooth.trajectories import gram
 
 
 def shard(scene, first_time, horizon, points, step, part, seed, threads):
@@ -17,24 +17,18 @@ def shard(scene, first_time, horizon, points, step, part, seed, threads):
     """
     tau = times.logarithmic(first_time, horizon, points)
     first, paths = part
-    result = simulate(
-        Scene(**scene),
-        horizon,
-        step,
-        paths,
-        seed,
-        times=tau,
-        first_path=first,
-        threads=threads,
-    )
+    scene = Scene(**scene)
     return artifact.dataset(
-        "Power sums of the integrated observable",
-        f"{paths} paths from number {first} of {Scene(**scene)}",
+        "Sums of the integrated observable and of its control variates",
+        f"{paths} paths from number {first} of {scene}",
+        {"time": ("time", tau, "tau")},
         {
-            "time": ("time", tau, "tau"),
-            "power": ("power", result["power"].values, "power"),
+            "gram": (
+                ("time", "row", "column"),
+                gram(scene, tau, step, paths, seed, first, threads),
+                "sums of the products of (1, D, D^2, M, M^2 - <M>)",
+            )
         },
-        {"power_sum": (("power", "time"), result["power_sum"].values, "sum over the paths")},
     )
 
 

@@ -1,0 +1,94 @@
+"""Time-stepping schemes, one file each, and the table of what they promise.
+
+A scheme is the coefficients of a step (a NamedTuple that `coefficients(scene, step, precision)`
+returns) and two kernels over the lanes of a panel. N steps are
+
+    flow  kick  flow  kick  flow ... kick  flow
+
+with N kicks, so that a splitting can merge what neighbouring steps share; `flow` is told whether
+it is the first or the last. Every NamedTuple has
+`step`; `normals`, how many normal numbers a step takes; and `transition` and `factor`, the
+Gaussian step whose increments march_pair joins.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+
+from nonsmooth.errors import SceneError
+from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, strang
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """What a scheme promises.
+
+    Attributes
+    ----------
+    module : module
+    smooth_order, kink_order : float
+        Weak order where the drift is smooth and across the kink of the friction law.
+    longest_step : callable
+        Of a scene: the step up to which the scheme is stable, inf if at every step.
+    handles : callable
+        Whether the scheme can simulate a scene.
+    """
+
+    module: ModuleType
+    smooth_order: float
+    kink_order: float
+    longest_step: Callable = lambda scene: math.inf
+    handles: Callable = lambda scene: True
+
+    def weak_order(self, scene):
+        """Weak order for a scene: the kink of dry friction may cost half an order."""
+        return self.kink_order if scene.mechanics.velocity_penalty != 0 else self.smooth_order
+
+
+SCHEMES = {
+    "strang": Scheme(strang, 2.0, 1.5),
+    "dry_friction": Scheme(dry_friction, 2.0, 2.0, handles=dry_friction.handles),
+    "drift_implicit": Scheme(drift_implicit, 1.0, 1.0, handles=drift_implicit.handles),
+    "euler_maruyama": Scheme(
+        euler_maruyama,
+        1.0,
+        1.0,
+        longest_step=euler_maruyama.longest_step,
+        handles=lambda scene: math.isfinite(scene.n),
+    ),
+}
+
+
+def scheme(scene, name=None):
+    """Return the scheme of that name, or the one of the highest order for the scene.
+
+    Raises
+    ------
+    SceneError
+        If there is no such scheme or it cannot simulate the scene.
+    """
+    if name is None:
+        name = "dry_friction" if dry_friction.handles(scene) else "strang"
+    if name not in SCHEMES:
+        raise SceneError(f"unknown scheme {name!r}; choose from {', '.join(SCHEMES)}")
+    if not SCHEMES[name].handles(scene):
+        raise SceneError(f"the scheme {name!r} cannot simulate this scene; choose 'strang'")
+    return SCHEMES[name]
+
+
+def coefficients(scene, name, step, precision="float32", reach=1.0, control=()):
+    """Return the coefficients of a step, with the table of a control variate if there is one."""
+    s = scheme(scene, name).module.coefficients(scene, step, precision)
+    if len(control) == 0 or "control" not in s._fields:
+        return s
+    number = np.dtype(precision).type
+    return s._replace(reach=number(reach), control=np.asarray(control, dtype=precision))
+
+
+def on_given_increments(s):
+    """Return the coefficients for increments that are not standard normal but to scale."""
+    one, zero = type(s.step)(1), type(s.step)(0)
+    return s._replace(factor=(one, zero, one))
