@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from nonsmooth.panel import STATE, new_panel
+from nonsmooth.schemes import strang
+
 ROOT = Path(__file__).parents[1]
 TRACKED = (
     "Snakefile",
@@ -19,6 +22,17 @@ TRACKED = (
     "environment-lock.txt",
     "pyproject.toml",
 )
+
+
+def one_step(scene, z, h, normals=(0.0, 0.0)):
+    """State after one step of the default splitting from z, on the given normal numbers."""
+    s = strang.coefficients(scene, h, "float64")
+    data = new_panel(scene, 0, 0, "float64").data
+    data[list(STATE), 0], data[:2, 0] = z, normals
+    strang.flow(s, data, True, False, 1)
+    strang.kick(s, data, 0, 1)
+    strang.flow(s, data, False, True, 1)
+    return data[list(STATE), 0]
 
 
 class Repository:

@@ -8,6 +8,7 @@ import nonsmooth as ns
 from nonsmooth.crossing import first_passage_counts, first_passage_shift, proportion
 from nonsmooth.errors import SceneError
 from nonsmooth.streams import BLOCK
+from nonsmooth.trajectories import coupled, step_bias
 
 SCENE = ns.Scene("friction", n=100)
 HORIZONS = np.linspace(0, 2, 11)[1:]
@@ -20,7 +21,7 @@ FALSE_ALARM = 1e-5
 )
 def test_published_values_at_T_2(p, value, paths):
     """W(sqrt(p) 0.6, 2 p) known from a Laplace-transform computation, n = 100."""
-    run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=paths, seed=3)
+    run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=paths, seed=3, step=0.02)
     estimate, error = run["probability"][-1], run["probability_error"][-1]
     # bias of h = 0.02: 1.2e-3 of the growth rate times dW/dlog T < 0.45
     allowed = stats.norm.isf(FALSE_ALARM / 2) * error + 6e-4
@@ -43,14 +44,22 @@ def test_thresholds_out_of_reach_and_within_every_reach():
     assert every.sum() == every[0] == 500
 
 
-@pytest.mark.parametrize(("k", "trials"), [(0, 50), (1, 50), (25, 50), (50, 50), (3, 100_000)])
-def test_interval_is_clopper_pearson(k, trials):
-    """Against scipy's exact test."""
-    estimate, lower, upper = proportion(k, trials)
-    exact = stats.binomtest(k, trials).proportion_ci(0.95, method="exact")
-    assert float(estimate) == k / trials
-    # scipy's root finder stops at 2e-12
-    assert np.allclose([lower, upper], [exact.low, exact.high], rtol=1e-11, atol=4e-12)
+@pytest.mark.parametrize(("probability", "trials"), [(0.16, 1_000), (0.5, 400), (1e-4, 100_000)])
+def test_interval_covers_at_its_level(probability, trials):
+    """Exact coverage by summation over the binomial law: 95 % within two, down to 1e-4."""
+    k = np.arange(trials + 1) if trials < 2_000 else np.arange(200)
+    _, lower, upper = proportion(k, trials)
+    covered = (lower <= probability) & (probability <= upper)
+    coverage = np.sum(stats.binom.pmf(k, trials, probability)[covered])
+    assert abs(coverage - 0.95) < 0.02
+
+
+def test_interval_at_the_ends():
+    """Nothing or everything counted: the limits 0 and 1 are included."""
+    _, lower, upper = proportion([0, 50], 50)
+    assert lower[0] == 0
+    assert upper[1] == 1
+    assert 0.02 < upper[0] < 0.08
 
 
 def test_asymptotic_method_is_the_limit():
@@ -64,7 +73,7 @@ def test_distance_to_the_limit_falls_with_p():
     """From 0.34 over 0.14 to 0.045 at T = 2, p = 1, 10, 100 (order p^-1/2)."""
     limit = ns.crossing_probability(SCENE, 0.6, [2.0], method="asymptotic")["probability"][0]
     for p, distance in ((1, 0.344), (10, 0.137), (100, 0.0450)):
-        run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=5_000, seed=4)
+        run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=5_000, seed=4, step=0.02)
         error = stats.norm.isf(FALSE_ALARM / 2) * run["probability_error"][-1]
         assert abs(float(limit - run["probability"][-1]) - distance) < error + 1e-3
 
@@ -76,11 +85,10 @@ def test_halving_shifts_the_passage_times_by_the_bias_of_the_variance():
     error = np.sqrt((square / count - mean**2) / count)
     assert count > 19_900
     # the variance's halving at the same step, from independent samples
-    from nonsmooth.trajectories import central_moments, step_bias
-
-    change = central_moments(step_bias(SCENE, 20.0, 0.2, 50_000, 7, times=[20.0]))
+    change, _ = coupled(SCENE, [20.0], 0.2, 50_000, 7)
+    bias, spread = step_bias(change, np.zeros(1), np.inf)
     v = float(ns.variance(SCENE, [20.0])["v"][0])
-    relative, relative_error = change["mean"][0] / v, change["mean_error"][0] / v
+    relative, relative_error = bias[0] / v, spread[0] / v
     # finite p: passage times are those of a Brownian motion up to p^-1/2 = 0.32
     allowed = stats.norm.isf(FALSE_ALARM / 2) * np.hypot(error, relative_error)
     assert abs(mean + relative) < allowed + 0.32 * abs(relative)
@@ -101,8 +109,9 @@ def test_divergence_is_an_error():
         ({"method": "montecarlo"}, "monte_carlo"),
         ({"step": -0.1}, "step > 0"),
         ({"paths": 0}, "paths > 0"),
-        ({"horizons": [0.0, 1.0]}, "first horizon > 0"),
-        ({"horizons": [1.0, 1.5]}, "numpy.linspace"),
+        ({"horizons": [0.0, 1.0]}, "sort them"),
+        ({"horizons": [1.0, 0.5]}, "sort them"),
+        ({"tol": 0.0}, "tol > 0"),
     ],
 )
 def test_bad_requests_are_refused(arguments, cure):

@@ -1,13 +1,18 @@
 """Formulas are read without eval: arithmetic passes, everything else is refused in one line."""
 
+import numba
 import numpy as np
 import pytest
-import sympy
 
 from nonsmooth.errors import ExpressionError
-from nonsmooth.expressions import compiled, parse, vectorised
+from nonsmooth.expressions import compiled, evaluate, parse, vectorised
+from nonsmooth.models import STATE_VARIABLES, x
 
-x = sympy.Symbol("x", real=True)
+
+@numba.njit
+def call_on(address, out, state):
+    """Evaluate a compiled formula over the columns of a state."""
+    evaluate(address, out.ctypes, state.ctypes, state.shape[1], len(out))
 
 
 def test_formula_means_what_python_means():
@@ -16,8 +21,12 @@ def test_formula_means_what_python_means():
     points = np.linspace(-2, 2, 9)
     expected = points**2 / 2 + 0.3 * np.cos(3 * points) - np.maximum(points, 0)
     assert np.allclose(vectorised(formula, (x,))(points), expected, rtol=1e-14)
-    kernel = compiled(formula, (x,))
-    assert np.allclose([kernel(p) for p in points], expected, rtol=1e-14)
+    state, out = np.zeros((4, 9)), np.empty(9)
+    state[3] = points
+    address = compiled(formula, STATE_VARIABLES).address
+
+    call_on(address, out, state)
+    assert np.allclose(out, expected, rtol=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -40,8 +40,9 @@ def test_spring_contact_solves_its_equation_and_keeps_the_energy(n):
     """Energy y^2/2 + chi_n(x) to rounding, and two half flows are one flow."""
     for _ in range(50):
         y, x, t = RNG.normal(scale=2), RNG.uniform(-1.2, 1.2), RNG.uniform(0.1, 3)
-        end = flows.spring_contact(y, x, t, n)
-        half = flows.spring_contact(*flows.spring_contact(y, x, t / 2, n), t / 2, n)
+        omega = np.sqrt(n)
+        end = flows.spring_contact(y, x, t, omega)
+        half = flows.spring_contact(*flows.spring_contact(y, x, t / 2, omega), t / 2, omega)
 
         def energy(y, x):
             return y**2 / 2 + n / 2 * max(abs(x) - 1, 0) ** 2
@@ -59,7 +60,7 @@ def test_spring_contact_against_an_ode_solver():
 
     for y, x, t in [(1.5, 0.3, 2.0), (-4.0, 0.9, 3.0), (0.2, 1.4, 1.0)]:
         exact = reference(motion, [y, x], t)
-        assert np.allclose(flows.spring_contact(y, x, t, 20.0), exact, atol=1e-5)
+        assert np.allclose(flows.spring_contact(y, x, t, np.sqrt(20.0)), exact, atol=1e-5)
 
 
 def test_elastic_impact_is_the_limit_of_the_spring():
@@ -68,7 +69,7 @@ def test_elastic_impact_is_the_limit_of_the_spring():
         limit = flows.elastic_impact(y, x, t)
         bounces = abs(y) * t / 2 + 1
         for n in (1e4, 1e8):
-            end = flows.spring_contact(y, x, t, n)
+            end = flows.spring_contact(y, x, t, np.sqrt(n))
             assert abs(end[1] - limit[1]) <= bounces * np.pi / np.sqrt(n) * abs(y)
         assert abs(limit[0]) == abs(y)
 
@@ -92,3 +93,42 @@ def test_projection_is_the_limit_of_the_elasto_plastic_flow():
         n = 1e6
         penalised = flows.penalised(z, t, drive, 0.0, 1.0, 0.0, n)
         assert abs(flows.confined(z, t, drive) - penalised) <= abs(drive) / n * (1 + 1e-9)
+
+
+FLOWS = {
+    "penalised, friction": lambda z, t, d: flows.penalised(
+        z, t, d, type(z)(0.7), type(z)(0.01), type(z)(100), type(z)(0)
+    ),
+    "penalised, plastic": lambda z, t, d: flows.penalised(
+        z, t, d, type(z)(0), type(z)(1), type(z)(0), type(z)(1e6)
+    ),
+    "at rest": lambda z, t, d: flows.at_rest(z, t, type(z)(0.01), type(z)(100)),
+    "dry friction": lambda z, t, d: flows.dry_friction(z, t, d, type(z)(0.7)),
+    "relax": lambda z, t, d: flows.relax(z, t, d, type(z)(0.7)),
+    "spring": lambda z, t, d: flows.spring_contact(d, z, t, type(z)(10))[1],
+    "impact": lambda z, t, d: flows.elastic_impact(d, z, t)[1],
+}
+
+
+@pytest.mark.parametrize("name", FLOWS)
+def test_single_precision_is_rounding_away_from_double(name):
+    """At most 32 units of rounding of the largest number met, for stiff and soft pieces."""
+    rng = np.random.default_rng(3)
+    for _ in range(300):
+        z, t, drive = rng.normal(scale=0.6), rng.uniform(0.005, 0.5), rng.normal(scale=2)
+        if name == "impact":
+            z = np.clip(z, -1, 1)
+        single = FLOWS[name](np.float32(z), np.float32(t), np.float32(drive))
+        double = FLOWS[name](*(float(np.float32(v)) for v in (z, t, drive)))
+        scale = 1 + abs(z) + abs(drive)
+        assert isinstance(single, float)
+        assert abs(single - double) < 32 * 2.0**-24 * scale
+
+
+def test_dry_friction_at_rest_is_the_penalised_flow_without_drive():
+    """Two implementations of the commonest case."""
+    for _ in range(200):
+        z, t, n = RNG.normal(), RNG.uniform(0.001, 2), 10 ** RNG.uniform(0, 6)
+        general = flows.penalised(z, t, 0.0, 0.0, 1 / n, n, 0.0)
+        assert flows.at_rest(z, t, 1 / n, n) == pytest.approx(general, abs=1e-13)
+    assert flows.at_rest(0.3, 0.5, 0.0, 1.0) == flows.dry_friction(0.3, 0.5, 0.0, 0.0) == 0.0

@@ -5,8 +5,7 @@ import pytest
 from scipy import integrate, linalg, stats
 
 import nonsmooth as ns
-from nonsmooth import strang
-from nonsmooth.trajectories import simulate
+from nonsmooth.schemes import strang
 
 FALSE_ALARM = 1e-4
 
@@ -14,14 +13,18 @@ FALSE_ALARM = 1e-4
 def samples(noise, horizon, step, paths, seed):
     """Return final values of the noise's variables from the origin."""
     scene = ns.Scene("obstacle", noise, observable="eta")
-    run = simulate(scene, horizon, step, paths, seed, times=[horizon], keep="paths")
+    run = ns.simulate(
+        scene, horizon, step=step, paths=paths, seed=seed, times=[horizon], keep="paths"
+    )
     return {name: run[name].values[:, -1] for name in scene.state}
 
 
 def gaussian_step(noise, step):
     """Transition matrix and covariance of one step of a linear noise."""
-    coefficients = strang.strang(ns.Scene("obstacle", noise, observable="eta"), step)
-    transition = np.reshape(coefficients.transition, (2, 2))
+    scene = ns.Scene("obstacle", noise, observable="eta")
+    coefficients = strang.coefficients(scene, step, "float64")
+    size = len(noise.drift)
+    transition = np.reshape(coefficients.transition, (2, 2)) + np.diag([1.0, size - 1.0])
     a, b, c = coefficients.factor
     factor = np.array([[a, 0], [b, c]])
     return transition, factor @ factor.T

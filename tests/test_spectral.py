@@ -119,4 +119,4 @@ def test_unreachable_tolerance_is_refused_with_the_best_value():
 def test_other_states_are_refused():
     """More than one variable has no solver yet, and the message says what to do."""
     with pytest.raises(SceneError, match="use simulate"):
-        ns.asymptotic_variance(ns.Scene("obstacle"))
+        ns.variance(ns.Scene("obstacle"), [1.0])

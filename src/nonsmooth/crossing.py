@@ -9,7 +9,7 @@ from nonsmooth.brownian import brownian_crossing
 from nonsmooth.errors import SceneError
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
-from nonsmooth.streams import blocks
+from nonsmooth.streams import blocks, labelled
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import coupled, parallel, require_finite, require_positive
 from nonsmooth.variance import asymptotic_variance, stationary_mean
@@ -210,7 +210,9 @@ def crossing_probability(
         problem = (scene, threshold, horizons, p)
         if step is None:
             step = _LONGEST_STEP * min(1.0, 1 / scene.damping)
-            bias, error = first_passage_bias(*problem, step, fewer, (seed, "pilot"), threads)
+            bias, error = first_passage_bias(
+                *problem, step, fewer, labelled(seed, "pilot"), threads
+            )
             order = schemes.scheme(scene, "strang").weak_order(scene)
             worst = np.max(np.abs(bias) + error)
             step = float(step * min(1.0, (tol / 2 / worst) ** (1 / order)))
@@ -220,7 +222,7 @@ def crossing_probability(
         )
         values = crossing_estimate(np.cumsum(crossed), paths)
         values["step_bias"], values["step_bias_error"] = first_passage_bias(
-            *problem, step, fewer, (seed, "halving"), threads
+            *problem, step, fewer, labelled(seed, "halving"), threads
         )
         attributes = {"step": step, "paths": paths}
     elif method == "asymptotic":

@@ -38,7 +38,7 @@ def relax(z, t, drive, rate):
 
 @inlined
 def _nonzero(rate):
-    """A rate that may be divided by; the tiny one makes the exponential a straight line."""
+    """Return a rate to divide by; the least one makes the exponential a straight line."""
     return maximum(rate, like(rate, 1e-15))
 
 

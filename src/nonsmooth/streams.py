@@ -66,6 +66,11 @@ def blocks(first, count):
     return [((first + done) // BLOCK, min(BLOCK, count - done)) for done in range(0, count, BLOCK)]
 
 
+def labelled(seed, label):
+    """Return the seed of an ensemble of its own."""
+    return (*seed, label) if isinstance(seed, tuple) else (seed, label)
+
+
 @inlined
 def _rotate(word, bits):
     return _U(_U(word << _U(bits)) | _U(word >> _U(32 - bits)))

@@ -12,7 +12,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.march import march, march_pair
 from nonsmooth.models import STATE_VARIABLES
 from nonsmooth.panel import STATE, TOTAL_DELTA, new_panel
-from nonsmooth.streams import blocks
+from nonsmooth.streams import blocks, labelled
 from nonsmooth.times import equal_steps
 
 
@@ -225,7 +225,7 @@ def simulate(
     seed=0,
     times=None,
     keep="moments",
-    scheme=None,
+    scheme="strang",
     precision="float32",
     threads=None,
 ):
@@ -250,8 +250,8 @@ def simulate(
         Increasing output times in (0, horizon]; 200 equidistant ones unless given.
     keep : {"moments", "paths"}
         Whether to return statistics, in O(1) memory, or the paths at the output times.
-    scheme : str, optional
-        A name in `schemes.SCHEMES`; the most accurate one for the scene unless given.
+    scheme : str
+        A name in `schemes.SCHEMES`.
     precision : {"float32", "float64"}
         Arithmetic of the moments' steps; their sums, and kept paths, are in double precision.
     threads : int, optional
@@ -276,12 +276,11 @@ def simulate(
         raise SceneError(f"unknown precision {precision!r}; choose 'float32' or 'float64'")
     times = _output_times(horizon, times)
     require_positive("tol", tol)
-    chosen = schemes.scheme(scene, scheme)
+    schemes.scheme(scene, scheme)  # refuses what it cannot simulate
     paths = int(np.ceil(32 / tol**2)) if paths is None else paths
     require_positive("paths", paths)
-    order = chosen.weak_order(scene)
     if step is None:
-        step = _choose_step(scene, times[-1:], tol / 4, order, seed, threads, scheme)
+        step = _choose_step(scene, times[-1:], tol / 4, seed, threads, scheme)
     require_positive("step", step)
     attributes = {"step": step, "paths": paths}
     if keep == "paths":
@@ -296,8 +295,9 @@ def simulate(
         )
     found = moments(gram(scene, times, step, paths, seed, 0, threads, scheme, precision=precision))
     fewer = min(paths, max(_PILOT_PATHS, paths // 8))
-    change, _ = coupled(scene, times, step, fewer, (seed, "halving"), threads, scheme=scheme)
-    found["variance_bias"], found["variance_bias_error"] = step_bias(change, found["mean"], order)
+    found["variance_bias"], found["variance_bias_error"] = _bias(
+        scene, times, step, fewer, labelled(seed, "halving"), threads, scheme
+    )
     return xr.Dataset(
         {name: ("time", values) for name, values in found.items()},
         coords={"time": times},
@@ -309,16 +309,36 @@ _LONGEST_STEP = 0.1  # in units of the fastest smooth time scale, 1/C_b or 1
 _PILOT_PATHS = 4096
 
 
-def _choose_step(scene, times, tol, order, seed, threads, scheme):
+def _bias(scene, times, step, paths, seed, threads, scheme):
+    """Bias of the variance of D by the step, and its standard error."""
+    chosen = schemes.scheme(scene, scheme)
+    order = chosen.weak_order(scene)
+    if chosen.coupled:
+        change, _ = coupled(scene, times, step, paths, seed, threads, scheme=scheme)
+        return step_bias(change, np.zeros(len(times)), order)
+    # independent runs: what doubling the step changes is larger than what halving does
+    coarse, fine = (
+        moments(gram(scene, times, h, 4 * paths, labelled(seed, k), 0, threads, scheme))
+        for k, h in (("coarse", 2 * step), ("fine", step))
+    )
+    factor = 1 / (2**order - 1)
+    return (
+        factor * (coarse["variance"] - fine["variance"]),
+        factor * np.hypot(coarse["variance_error"], fine["variance_error"]),
+    )
+
+
+def _choose_step(scene, times, tol, seed, threads, scheme):
     """Find the step whose relative bias of the variance is below `tol`, from a coarse pilot."""
+    chosen = schemes.scheme(scene, scheme)
     step = _LONGEST_STEP * min(1.0, 1 / scene.damping)
-    step = min(step, schemes.scheme(scene, scheme).longest_step(scene) / 2, float(times[-1]) / 16)
-    seed = (seed, "pilot")
-    found = moments(gram(scene, times, step, _PILOT_PATHS, seed, 0, threads, scheme))
-    change, _ = coupled(scene, times, step, _PILOT_PATHS, seed, threads, scheme=scheme)
-    bias, error = step_bias(change, found["mean"], order)
+    step = min(step, chosen.longest_step(scene) / 4, float(times[-1]) / 32)
+    found = moments(
+        gram(scene, times, step, _PILOT_PATHS, labelled(seed, "pilot"), 0, threads, scheme)
+    )
+    bias, error = _bias(scene, times, step, _PILOT_PATHS, labelled(seed, "pilot"), threads, scheme)
     worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
-    return float(step * min(1.0, (tol / worst) ** (1 / order)))
+    return float(step * min(1.0, (tol / worst) ** (1 / chosen.weak_order(scene))))
 
 
 def require_finite(results):

@@ -10,6 +10,7 @@ from nonsmooth.closed_form import friction_variance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.growth import growth, growth_bias, integrals
+from nonsmooth.streams import labelled
 
 _DEGREES = (8, 12, 16, 20, 24)
 
@@ -97,9 +98,16 @@ def _by_monte_carlo(scene, tol, seed, threads, began):
     paths = int(np.ceil(10 / tol**2))  # two standard errors are tol
     step = _STEP * min(1.0, 1 / scene.damping)
     for _ in range(4):
-        bias, spread = growth_bias(scene, times, step, max(4096, paths // 16), (seed, "halving"))
+        fewer = max(4096, paths // 16)
+        bias, spread = growth_bias(scene, times, step, fewer, labelled(seed, "halving"))
         sample = growth(integrals(scene, times, step, paths, seed, threads=threads), times)
         error = float(np.sqrt(sample.rate_error**2 + bias**2 + spread**2))
+        if sample.rate < 5 * error:
+            raise ToleranceError(
+                f"gamma^2 = {sample.rate:.1e} with an error of {error:.1e} may be 0, which it is "
+                "if int_0^t g stays bounded, as for g = y where the displacement is confined; "
+                "choose another observable, such as x"
+            )
         if error <= tol * sample.rate:
             break
         if sample.rate_error > tol / 2 * sample.rate:

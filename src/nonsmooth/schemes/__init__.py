@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 
-import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from nonsmooth.errors import SceneError
 from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, strang
@@ -35,6 +35,8 @@ class Scheme:
         Of a scene: the step up to which the scheme is stable, inf if at every step.
     handles : callable
         Whether the scheme can simulate a scene.
+    coupled : bool
+        Whether steps of different length can share their noise.
     """
 
     module: ModuleType
@@ -42,6 +44,7 @@ class Scheme:
     kink_order: float
     longest_step: Callable = lambda scene: math.inf
     handles: Callable = lambda scene: True
+    coupled: bool = True
 
     def weak_order(self, scene):
         """Weak order for a scene: the kink of dry friction may cost half an order."""
@@ -50,7 +53,7 @@ class Scheme:
 
 SCHEMES = {
     "strang": Scheme(strang, 2.0, 1.5),
-    "dry_friction": Scheme(dry_friction, 2.0, 2.0, handles=dry_friction.handles),
+    "dry_friction": Scheme(dry_friction, 2.0, 2.0, handles=dry_friction.handles, coupled=False),
     "drift_implicit": Scheme(drift_implicit, 1.0, 1.0, handles=drift_implicit.handles),
     "euler_maruyama": Scheme(
         euler_maruyama,
@@ -62,16 +65,14 @@ SCHEMES = {
 }
 
 
-def scheme(scene, name=None):
-    """Return the scheme of that name, or the one of the highest order for the scene.
+def scheme(scene, name="strang"):
+    """Return the scheme of that name.
 
     Raises
     ------
     SceneError
         If there is no such scheme or it cannot simulate the scene.
     """
-    if name is None:
-        name = "dry_friction" if dry_friction.handles(scene) else "strang"
     if name not in SCHEMES:
         raise SceneError(f"unknown scheme {name!r}; choose from {', '.join(SCHEMES)}")
     if not SCHEMES[name].handles(scene):
@@ -84,8 +85,11 @@ def coefficients(scene, name, step, precision="float32", reach=1.0, control=()):
     s = scheme(scene, name).module.coefficients(scene, step, precision)
     if len(control) == 0 or "control" not in s._fields:
         return s
-    number = np.dtype(precision).type
-    return s._replace(reach=number(reach), control=np.asarray(control, dtype=precision))
+    # what a kick does to u, projected on its first two Hermite polynomials, is u' and u'' averaged
+    # over the kick
+    width = float(s.factor[0]) / (2 * reach / (len(control) - 1))
+    averaged = gaussian_filter1d(control, width, mode="nearest")
+    return s._replace(reach=type(s.step)(reach), control=averaged.astype(precision))
 
 
 def on_given_increments(s):

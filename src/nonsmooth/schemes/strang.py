@@ -57,9 +57,10 @@ _VELOCITY, _PENALTY_FORCE, _FORMULA = 0, 1, 2  # observables
 class Strang(NamedTuple):
     """Coefficients of the splitting for one scene, one step and one precision.
 
-    `normals` is how many normal numbers a step takes. `transition` (2 x 2, row by row, less
-    the identity) and `factor` (lower triangle) are the exact Gaussian step of the linear
-    noise's (zeta, eta), or of one variable alone in the first entries. `control` tabulates the integrand of the control variate on [-reach, reach].
+    `transition` (2 x 2, row by row, less the identity) and `factor` (lower triangle) are the
+    exact Gaussian step of the linear noise's (zeta, eta), or of one variable alone in the first
+    entries. `slope`, `first_drift`, `second_drift` and `formula` are addresses of U', the noise's
+    drifts and g. `control` tabulates the integrand of the control variate on [-reach, reach].
     """
 
     step: float
@@ -277,7 +278,11 @@ def _gain(s, data, lanes):
 
 @inlined
 def _gather_martingale(s, data, normal, lanes):
-    """Add the martingale's increment c(y) kick and the variance it has, c(y) from its table."""
+    """Add the martingale's increment, c kick + c' (kick^2 - its mean)/2, and its variance.
+
+    c = u' at the state before the kick, from its table: u(y + kick) - u(y) to second order, less
+    its mean, so that what is left does not grow with the square root of the step.
+    """
     control = s.control
     last = control.size - 1
     scale = like(s.reach, last) / (s.reach + s.reach)
@@ -285,9 +290,13 @@ def _gather_martingale(s, data, normal, lanes):
         place = (minimum(maximum(data[Y, i], -s.reach), s.reach) + s.reach) * scale
         cell = min(np.int32(place), np.int32(last - 1))
         part = place - like(place, cell)
-        integrand = s.factor[0] * (control[cell] + part * (control[cell + 1] - control[cell]))
-        data[MARTINGALE, i] = fma(integrand, data[normal, i], data[MARTINGALE, i])
-        data[VARIATION, i] = fma(integrand, integrand, data[VARIATION, i])
+        rise = control[cell + 1] - control[cell]
+        first = s.factor[0] * fma(part, rise, control[cell])
+        second = s.factor[0] * s.factor[0] * scale * rise / like(scale, 2.0)
+        kick = data[normal, i]
+        square = fma(kick, kick, like(scale, -1.0))
+        data[MARTINGALE, i] += fma(first, kick, second * square)
+        data[VARIATION, i] += fma(first, first, like(scale, 2.0) * second * second)
 
 
 @inlined
