@@ -24,6 +24,7 @@ wildcard_constraints:
     n="[0-9.e+-]+|inf",
     p="[0-9.e+-]+",
     shard="[0-9]+",
+    scene="[a-z0-9_]+",
 
 
 rule all:
@@ -37,4 +38,5 @@ include: "workflow/rules/trajectories.smk"
 include: "workflow/rules/variance.smk"
 include: "workflow/rules/crossing.smk"
 include: "workflow/rules/convergence.smk"
+include: "workflow/rules/sweep.smk"
 include: "workflow/rules/paper.smk"

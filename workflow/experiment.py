@@ -40,6 +40,8 @@ def check(config):
                 f"integer, so that the mesh can be halved; use {nodes // 4 * 4 + 1}"
             )
     _check_times(config["variance"])
+    for parameters in config["sweep"]["scenes"].values():
+        Scene(**parameters["scene"])
     for model, parameters in config["trajectories"]["models"].items():
         Scene(model, potential=parameters["potential"], damping=parameters["damping"])
     for key, path in config["outputs"].items():

@@ -14,16 +14,18 @@ _DIGEST = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(_PACKAGE.rglob(
 _CACHE = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
 
 
-def kernel(function):
+def kernel(function, forceinline=False):
     """Compile a function to machine code when it is first called."""
     # the folder is read at decoration; other users of numba keep theirs
     elsewhere, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _CACHE
     try:
-        return numba.njit(function, cache=True, nogil=True, error_model="numpy")
+        return numba.njit(
+            function, cache=True, nogil=True, error_model="numpy", forceinline=forceinline
+        )
     finally:
         numba.config.CACHE_DIR = elsewhere
 
 
 def inlined(function):
     """Compile a function into its callers: a loop over lanes vectorises only without calls."""
-    return numba.njit(function, forceinline=True, nogil=True, error_model="numpy")
+    return kernel(function, forceinline=True)

@@ -14,6 +14,8 @@ from nonsmooth.jobs import inputs, job
 TEXT_WIDTH = 6.3  # inches
 # Wong's colour-blind-safe palette, ordered so that neighbours also differ in grey
 BLACK, BLUE, ORANGE, SKY, GREEN = "#000000", "#0072B2", "#D55E00", "#56B4E9", "#009E73"
+# looks of the curves of a sweep over p
+LOOKS = [(GREEN, (0, (1, 2))), (SKY, (0, (3, 1, 1, 1, 1, 1))), (BLUE, "-."), (BLACK, "--")]
 
 STYLE = {
     "axes.grid": True,

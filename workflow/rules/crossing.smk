@@ -66,6 +66,8 @@ rule crossing_growth:
         f"{RESULTS}/logs/crossing/growth.log",
     benchmark:
         f"{RESULTS}/benchmarks/crossing/growth.tsv"
+    # a single job of its kind: it compiles one kernel while another core compiles the other
+    priority: 200
     conda:
         "../envs/environment.yaml"
     threads: 1

@@ -176,13 +176,13 @@ def gaussian_step(matrix, sigma, step):
 @inlined
 def flow(s, data, first, last, lanes):
     """Mechanical flows between two noise steps, or the first or the last half-flows."""
+    # every part is called in one place only, which is what compiling them costs
     half = s.step / like(s.step, 2.0)
+    merged = not (s.moves or first or last)  # Y(h) at once
     for part in range(2):
-        if not (s.moves or first or last):  # Y(h) at once
-            if part == 0:
-                _accelerate(s, data, s.step, lanes)
-        elif not (first if part == 0 else last):
-            _accelerate(s, data, half, lanes)
+        skipped = (part == 1 and (merged or last)) or (part == 0 and first)
+        if not skipped:
+            _accelerate(s, data, s.step if merged else half, lanes)
         if part == 0 and s.moves:
             _displace(s, data, half if first or last else s.step, lanes)
 
@@ -195,9 +195,10 @@ def kick(s, data, normal, lanes):
     if s.noise == _WHITE and s.observable == _VELOCITY:
         _shake_and_observe_velocity(s, data, normal, lanes)
         return
-    _gain(s, data, lanes)
-    _shake(s, data, normal, lanes)
-    _gain(s, data, lanes)
+    for part in range(2):
+        _gain(s, data, lanes)
+        if part == 0:
+            _shake(s, data, normal, lanes)
     observe(data, lanes)
 
 
@@ -219,12 +220,12 @@ def _shake_and_observe_velocity(s, data, normal, lanes):
 def _shake(s, data, normal, lanes):
     (a, b, c, d), (e, f, g) = s.transition, s.factor
     if not s.linear:
-        half = s.step / like(s.step, 2.0)
         driven = ZETA if s.noise == _HAMILTONIAN else ETA
-        _drift_flow(s, data, half, lanes)
-        for i in range(lanes):
-            data[driven, i] += e * data[normal, i]
-        _drift_flow(s, data, half, lanes)
+        for part in range(2):
+            _drift_flow(s, data, s.step / like(s.step, 2.0), lanes)
+            if part == 0:
+                for i in range(lanes):
+                    data[driven, i] += e * data[normal, i]
     elif s.noise == _HAMILTONIAN:
         for i in range(lanes):
             zeta, eta = data[ZETA, i], data[ETA, i]

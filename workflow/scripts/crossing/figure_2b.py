@@ -3,10 +3,8 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.plotting import BLACK, BLUE, GREEN, ORANGE, SKY, TEXT_WIDTH, draw
+from nonsmooth.plotting import LOOKS, ORANGE, TEXT_WIDTH, draw
 from nonsmooth.tables import sorted_by
-
-LOOKS = [(GREEN, (0, (1, 2))), (SKY, (0, (3, 1, 1, 1, 1, 1))), (BLUE, "-."), (BLACK, "--")]
 
 
 def crossing(monte_carlo, asymptotic, check):

@@ -1,0 +1,41 @@
+"""Threshold crossing probabilities of one scene of the sweep at one p."""
+
+from functools import partial
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.crossing import crossing_estimate, first_passage_counts
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def crossing(scene, threshold, horizon, outputs, p, step, paths, seed, threads):
+    """Count the paths that have crossed sqrt(p) b by p T, for equidistant T.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    scene = Scene(**scene)
+    crossed = first_passage_counts(
+        scene, threshold, horizons, p, step, paths, (seed, f"p = {p}"), threads=threads
+    )
+    estimate = crossing_estimate(np.cumsum(crossed), paths)
+    describe = {
+        "probability": "probability of crossing sqrt(p) b by p T",
+        "probability_error": "standard error of the probability",
+        "lower": "lower 95 % confidence limit (Jeffreys)",
+        "upper": "upper 95 % confidence limit (Jeffreys)",
+    }
+    return artifact.dataset(
+        "Threshold crossing probability by Monte Carlo",
+        f"{paths} paths of {scene}, b = {threshold}, p = {p}",
+        {"horizon": ("horizon", horizons, "T"), "p": ((), p, "scale p")},
+        {name: ("horizon", estimate[name], text) for name, text in describe.items()},
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(crossing, threads=snakemake.threads), snakemake)

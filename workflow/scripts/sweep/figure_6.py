@@ -1,0 +1,72 @@
+"""Figure 6: crossing probabilities of every scene for growing p, and their limits."""
+
+from itertools import cycle
+
+import matplotlib.pyplot as plt
+
+from nonsmooth.models import MODELS
+from nonsmooth.noises import NOISES
+from nonsmooth.plotting import LOOKS, ORANGE, TEXT_WIDTH, draw
+from nonsmooth.scene import Scene
+
+
+def sweep(crossing, limit, scenes, p):
+    """Draw one panel per scene, models in rows and noises in columns.
+
+    Parameters
+    ----------
+    crossing, limit, scenes, p
+        As for table 5.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows, columns = list(MODELS), list(NOISES)
+    figure, axes = plt.subplots(
+        len(rows),
+        len(columns),
+        figsize=(TEXT_WIDTH, 1.05 * TEXT_WIDTH),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+    )
+    for k, (name, parameters) in enumerate(scenes.items()):
+        scene = Scene(**parameters["scene"])
+        panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
+        runs = crossing[k * len(p) : (k + 1) * len(p)]
+        for scale, run, (color, dashes) in zip(p, runs, cycle(LOOKS), strict=False):
+            horizon = run["horizon"].values
+            panel.fill_between(
+                horizon, run["lower"], run["upper"], color=color, alpha=0.4, linewidth=0
+            )
+            panel.plot(
+                horizon,
+                run["probability"],
+                color=color,
+                linestyle=dashes,
+                label=f"$p = {scale:g}$",
+            )
+        panel.plot(
+            limit["horizon"],
+            limit["probability"].sel(scene=name),
+            color=ORANGE,
+            label=r"$W_\star(b/\gamma, T)$",
+            zorder=1,
+        )
+        panel.set_title(f"$b = {parameters['threshold']:g}$", fontsize=8, loc="right")
+    for row, model in zip(axes, rows, strict=True):
+        row[0].set_ylabel(f"{MODELS[model].title.lower()}\n" + r"$W(\sqrt{p}\,b, pT)$")
+    for panel, noise in zip(axes[0], columns, strict=True):
+        panel.set_title(
+            NOISES[noise].title.replace("colored noise of ", ""), fontsize=8, loc="left"
+        )
+    for panel in axes[-1]:
+        panel.set_xlabel("$T$")
+    axes[0, 0].legend(loc="upper left")
+    axes[0, 0].set(xlim=(0, float(limit["horizon"][-1])), ylim=(0, None))
+    return figure
+
+
+if __name__ == "__main__":
+    draw(sweep, snakemake)

@@ -1,0 +1,70 @@
+"""The asymptotic crossing formula of every scene, from its Monte Carlo gamma^2."""
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.crossing import asymptotic_crossing
+from nonsmooth.errors import CheckError
+from nonsmooth.jobs import produce
+
+ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7
+
+
+def limit(variance, scenes, horizon, outputs):
+    """Evaluate W_star(b / gamma, T) with the error it inherits from gamma^2.
+
+    Parameters
+    ----------
+    variance : list of xarray.Dataset
+        One per scene, in the order of `scenes`.
+    scenes : dict
+        Name -> the scene's parameters and its threshold.
+    horizon, outputs
+        Last T and number of equidistant T.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (scene, horizon).
+
+    Raises
+    ------
+    CheckError
+        If the observable is not centred, or the bias of the time step not below a hundredth
+        of gamma^2.
+    """
+    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    curves = []
+    for (name, parameters), run in zip(scenes.items(), variance, strict=True):
+        value = {key: float(run[key]) for key in run.data_vars}
+        if abs(value["mean"]) > ALLOWED * value["mean_error"]:
+            raise CheckError(
+                f"the asymptotic formula needs E g = 0, but {name} has the mean "
+                f"{value['mean']:.3g}; subtract it from the scene's observable"
+            )
+        if abs(value["bias"]) - ALLOWED * value["bias_error"] > 0.01 * value["gamma2"]:
+            raise CheckError(
+                f"the time step's bias of {name} is above 1 % of gamma^2; reduce sweep.step"
+            )
+        error = np.linalg.norm([value[k] for k in ("gamma2_error", "bias", "bias_error")])
+        curves.append(
+            asymptotic_crossing(parameters["threshold"], horizons, value["gamma2"], error)
+        )
+    probability, probability_error = np.swapaxes(curves, 0, 1)
+    over = ("scene", "horizon")
+    return artifact.dataset(
+        "Limits of the threshold crossing probabilities",
+        "W_star(b / gamma, T) with gamma^2 by Monte Carlo",
+        {
+            "scene": ("scene", list(scenes), "name of the scene"),
+            "horizon": ("horizon", horizons, "T"),
+        },
+        {
+            "probability": (over, probability, "W_star(b / gamma, T)"),
+            "probability_error": (over, probability_error, "error inherited from gamma^2"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(limit, snakemake)

@@ -1,0 +1,65 @@
+"""Table 5: gamma^2 and crossing probabilities of every scene by Monte Carlo."""
+
+import pandas as pd
+
+from nonsmooth.models import MODELS
+from nonsmooth.noises import NOISES
+from nonsmooth.scene import Scene
+from nonsmooth.tables import scientific, typeset
+
+
+def sweep(variance, crossing, limit, scenes, p):
+    """Tabulate one row per scene; probabilities at the last horizon.
+
+    Parameters
+    ----------
+    variance : list of xarray.Dataset
+        One per scene, in the order of `scenes`.
+    crossing : list of xarray.Dataset
+        One per scene and p, p changing fastest.
+    limit : xarray.Dataset
+        Over (scene, horizon).
+    scenes : dict
+        Name -> the scene's parameters and its threshold.
+    p : list of float
+
+    Returns
+    -------
+    plain, cells : pandas.DataFrame
+    """
+    plain, cells = [], []
+    for k, (name, parameters) in enumerate(scenes.items()):
+        scene = Scene(**parameters["scene"])
+        gamma2 = {key: float(variance[k][key]) for key in variance[k].data_vars}
+        last = [run.isel(horizon=-1) for run in crossing[k * len(p) : (k + 1) * len(p)]]
+        star = limit.sel(scene=name).isel(horizon=-1)
+        row = {"scene": name, "threshold": parameters["threshold"]} | gamma2
+        for scale, run in zip(p, last, strict=True):
+            row[f"W_{scale:g}"] = float(run["probability"])
+            row[f"W_{scale:g}_error"] = float(run["probability_error"])
+        row["W_star"] = float(star["probability"])
+        row["W_star_error"] = float(star["probability_error"])
+        plain.append(row)
+        cells.append(
+            {
+                "model": MODELS[scene.model].title,
+                "noise": NOISES[scene.noise.kind].title.replace("colored noise of ", ""),
+                "state": ", ".join(f"${_symbol(s)}$" for s in scene.state),
+                "$g$": f"${_symbol(scene.observable)}$",
+                "$b$": f"${parameters['threshold']:g}$",
+                r"$\gamma^2$": rf"{gamma2['gamma2']:.4f}",
+                r"$\pm$": scientific(gamma2["gamma2_error"], bound=True),
+                "bias": scientific(gamma2["bias"]),
+            }
+            | {f"$p = {scale:g}$": f"{row[f'W_{scale:g}']:.4f}" for scale in p}
+            | {r"$W_\star$": f"{row['W_star']:.4f}"}
+        )
+    return pd.DataFrame(plain), pd.DataFrame(cells)
+
+
+def _symbol(name):
+    return name if len(name) == 1 else rf"\{name}"
+
+
+if __name__ == "__main__":
+    typeset(sweep, snakemake)

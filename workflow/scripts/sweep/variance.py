@@ -1,0 +1,39 @@
+"""gamma^2 of one scene of the sweep by Monte Carlo."""
+
+from functools import partial
+
+from nonsmooth import artifact
+from nonsmooth.growth import growth, growth_bias, integrals
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def variance(scene, times, step, paths, halving_paths, seed, threads):
+    """Estimate the growth rate of the variance between two times, and its bias by the step.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene)
+    found = growth(integrals(scene, times, step, paths, (seed, "growth"), threads=threads), times)
+    bias, bias_error = growth_bias(
+        scene, times, step, halving_paths, (seed, "growth, halving"), threads
+    )
+    return artifact.dataset(
+        "Growth rate of the variance of the integrated observable by Monte Carlo",
+        f"{paths} paths of {scene}, from t = {times[0]:g} to {times[1]:g}",
+        {},
+        {
+            "gamma2": ((), found.rate, "growth rate of the variance of int_0^t g"),
+            "gamma2_error": ((), found.rate_error, "standard error of the growth rate"),
+            "bias": ((), bias, "bias of the growth rate by the time step"),
+            "bias_error": ((), bias_error, "standard error of the bias"),
+            "mean": ((), found.mean, "stationary mean of g"),
+            "mean_error": ((), found.mean_error, "standard error of the mean"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(variance, threads=snakemake.threads), snakemake)
