@@ -1,9 +1,11 @@
 """Scenes reduce themselves to their minimal state and refuse what makes no sense."""
 
+import warnings
+
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import NonsmoothError
+from nonsmooth.errors import AssumptionWarning, ExpressionError, NonsmoothError, SceneError
 
 
 @pytest.mark.parametrize(
@@ -68,3 +70,32 @@ def test_impossible_noises_are_refused(noise, offender):
     with pytest.raises(NonsmoothError, match=offender) as error:
         noise()
     assert "\n" not in str(error.value)
+
+
+def test_what_the_theorems_do_not_cover_is_warned_about():
+    """U that does not grow quadratically, where the displacement is part of the state."""
+    for potential in ("0", "abs(x)", "cos(x)", "-x**2"):
+        with pytest.warns(AssumptionWarning, match=r"violates \(HU2\)"):
+            ns.Scene("obstacle", potential=potential)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ns.Scene("friction")  # only the velocity matters
+        ns.Scene("obstacle", potential="x**2/2 + 0.3*cos(3*x)")
+        ns.Scene("elasto_plastic", potential="(x**2 - 4)**2/100")
+
+
+@pytest.mark.parametrize("noise", [None, 0.0, "none"])
+def test_a_scene_without_noise_is_refused(noise):
+    """One line that says what to choose from."""
+    with pytest.raises(SceneError, match="white"):
+        ns.Scene("friction", noise=noise)
+
+
+def test_penalty_force_is_an_observable():
+    """By the name it has in the model; its state is the smallest that determines it."""
+    scene = ns.Scene("friction", observable="friction_force")
+    assert scene.state == ("y",)
+    assert scene.is_odd()
+    assert not ns.Scene("friction", observable="y + 1").is_odd()
+    with pytest.raises(ExpressionError):
+        ns.Scene("friction", observable="contact_force")

@@ -13,6 +13,10 @@ class SceneError(NonsmoothError):
     """A scene that is impossible, or outside the theory or the method asked for."""
 
 
+class AssumptionWarning(UserWarning):
+    """A scene that can be computed but that the paper's theorems do not cover."""
+
+
 class ToleranceError(NonsmoothError):
     """A tolerance that the method could not meet."""
 

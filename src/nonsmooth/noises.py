@@ -12,7 +12,7 @@ from nonsmooth.models import eta, y, zeta
 
 # Where "at infinity" a potential is examined: far enough for the leading term of any
 # reasonable formula to dominate, near enough for its fourth power not to overflow.
-_FAR = np.array([1e2, 1e3, 1e4, 1e6])
+FAR = np.array([1e2, 1e3, 1e4, 1e6])
 
 
 def _require_positive(name, value):
@@ -82,7 +82,7 @@ class Langevin:
 
     def __post_init__(self):
         _require_positive("sigma", self.sigma)
-        ends = np.concatenate([-_FAR, _FAR])
+        ends = np.concatenate([-FAR, FAR])
         with np.errstate(all="ignore"):
             restoring = -vectorised(self.drift[eta], (eta,))(ends) / ends
         if not (np.all(restoring > 0) and restoring[-1] > 1e-3 * restoring[-4]):
@@ -133,7 +133,7 @@ class Hamiltonian:
     def __post_init__(self):
         _require_positive("sigma", self.sigma)
         angle = np.linspace(0, 2 * np.pi, 16, endpoint=False)
-        ends = np.outer(_FAR, np.cos(angle)), np.outer(_FAR, np.sin(angle))
+        ends = np.outer(FAR, np.cos(angle)), np.outer(FAR, np.sin(angle))
         with np.errstate(all="ignore"):
             energy = vectorised(self.energy, (eta, zeta))(*ends)
             dissipation = vectorised(self.dissipation, (eta, zeta))(*ends)

@@ -1,14 +1,16 @@
 """A scene: mechanical model + noise + potential + damping + penalization + observable."""
 
 import difflib
+import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+import numpy as np
 import sympy
 
 from nonsmooth import models, noises
-from nonsmooth.errors import SceneError
-from nonsmooth.expressions import parse
+from nonsmooth.errors import AssumptionWarning, SceneError
+from nonsmooth.expressions import parse, vectorised
 from nonsmooth.models import STATE_VARIABLES, x
 from nonsmooth.penalties import n as penalization
 
@@ -57,6 +59,11 @@ class Scene:
         if isinstance(self.noise, str):
             _require_known("noise", self.noise, noises.NOISES)
             object.__setattr__(self, "noise", noises.NOISES[self.noise])
+        if not isinstance(self.noise, noises.White | noises.Langevin | noises.Hamiltonian):
+            raise SceneError(
+                f"a scene needs noise, got {self.noise!r}; choose from {', '.join(noises.NOISES)} "
+                "or a noise object"
+            )
         for name in ("n", "damping"):
             try:
                 object.__setattr__(self, name, float(getattr(self, name)))
@@ -88,7 +95,21 @@ class Scene:
                 f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
                 f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
             )
-        self.potential_expression  # noqa: B018 - reads the formula, so that a bad one fails here
+        self._warn_if_not_confined()
+
+    def _warn_if_not_confined(self):
+        """Warn if U grows less than quadratically (hyp:HU2b); reads the formula."""
+        ends = np.outer([-1, 1], noises.FAR)
+        with np.errstate(all="ignore"):
+            growth = vectorised(self.potential_expression, (x,))(ends) / ends**2
+        confining = np.all(growth[:, -1] > 1e-3 * np.abs(growth[:, 0])) and np.all(growth > 0)
+        if "x" in self.state and not confining:
+            warnings.warn(
+                f"U = {self.potential!r} violates (HU2), U(x) >= c x**2 - C: the paper's theorems "
+                "do not cover this scene; add a confining term such as x**2/2",
+                AssumptionWarning,
+                stacklevel=4,
+            )
 
     @property
     def identity(self):

@@ -1,0 +1,1 @@
+"""Speed against error, coverage of the error bars; run by hand, see README.md."""

@@ -1,0 +1,98 @@
+"""How often the 95 % intervals of many small runs contain the truth.
+
+`python -m benchmarks.coverage` prints one line per quantity for 1000 independent runs each.
+Expected are 930 to 970; the number itself has a standard deviation of 7.
+"""
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+import nonsmooth as ns
+from nonsmooth.crossing import first_passage_counts, proportion
+from nonsmooth.growth import growth, integrals
+from nonsmooth.trajectories import gram, moments
+
+FRICTION = ns.Scene("friction", n=100)
+# the restoring force's gamma^2 is the forcing's spectrum at 0, whatever the yield
+BALANCE = ns.Scene("elasto_plastic", n=np.inf, potential="x**2/2", observable="x + y")
+TIMES = (10.0, 60.0)
+RARE, RARE_HORIZON, RARE_STEP = 0.95, 1.0, 0.02  # a threshold crossed once in ten thousand
+
+
+def within(value, error, truth):
+    """Tell whether the normal 95 % interval contains the truth."""
+    return bool(abs(value - truth) <= stats.norm.isf(0.025) * error)
+
+
+def of_moments(run, control, paths=512):
+    """Test mean and variance of D(5)."""
+    found = moments(gram(FRICTION, [5.0], 0.02, paths, (run, "moments"), control=control))
+    exact = {"mean": 0.0, "variance": float(ns.variance(FRICTION, [5.0])["v"][0])}
+    return {name: within(found[name][0], found[f"{name}_error"][0], exact[name]) for name in exact}
+
+
+def of_growth(run, scene, truth, step, control, paths=512):
+    """Test gamma^2."""
+    sample = integrals(scene, TIMES, step, paths, (run, "growth"), control=control)
+    found = growth(sample, TIMES)
+    return within(found.rate, found.rate_error, truth)
+
+
+def of_crossing(run, threshold, horizon, truth, paths):
+    """Test a crossing probability by the interval for proportions."""
+    crossed = first_passage_counts(
+        FRICTION, threshold, [horizon], 1.0, RARE_STEP, paths, (run, "crossing")
+    )
+    _, lower, upper = proportion(crossed[0], paths)
+    return bool(lower <= truth <= upper)
+
+
+def rare_probability(paths):
+    """Probability of the rare crossing with the runs' own step, from independent paths."""
+    crossed = first_passage_counts(
+        FRICTION, RARE, [RARE_HORIZON], 1.0, RARE_STEP, paths, (0, "truth")
+    )
+    return crossed[0] / paths
+
+
+def coverage(runs, truth_paths=100_000_000):
+    """Count the intervals that contain the truth.
+
+    Parameters
+    ----------
+    runs : int
+        Independent runs per quantity.
+    truth_paths : int
+        Paths from which the rare probability is known.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Quantity and proportion covered.
+    """
+    gamma2 = ns.asymptotic_variance(FRICTION).value
+    rare = rare_probability(truth_paths)
+    hits = {}
+    for run in range(1, runs + 1):
+        for control, name in ((False, ""), (True, ", control variate")):
+            for quantity, hit in of_moments(run, control).items():
+                hits.setdefault(quantity + name, []).append(hit)
+            hits.setdefault("gamma^2" + name, []).append(
+                of_growth(run, FRICTION, gamma2, 0.01, control)
+            )
+        hits.setdefault("gamma^2, elasto-plastic, n = inf", []).append(
+            of_growth(run, BALANCE, 1.0, 0.02, False)
+        )
+        # by a Laplace transform of the crossing problem, known to seven digits
+        hits.setdefault("W = 0.16", []).append(of_crossing(run, 0.6, 2.0, 0.1606775, 1_000))
+        hits.setdefault(f"W = {rare:.2e}", []).append(
+            of_crossing(run, RARE, RARE_HORIZON, rare, 100_000)
+        )
+    return pd.DataFrame(
+        {"quantity": list(hits), "covered": [np.mean(hit) for hit in hits.values()]}
+    )
+
+
+if __name__ == "__main__":
+    print(coverage(1000).to_string(index=False))
