@@ -14,6 +14,23 @@ STEP, PENALIZATION = 0.02, 100.0
 
 
 def torch_loop(paths, steps):
+    """Run tensor operations as one writes them down, single precision."""
+    import torch
+
+    torch.set_num_threads(1)
+
+    def run():
+        y, delta, peak = torch.zeros(paths), torch.zeros(paths), torch.zeros(paths)
+        for _ in range(steps):
+            delta = delta + STEP * y
+            force = y + torch.clamp(PENALIZATION * y, -1.0, 1.0)
+            y = y - STEP * force + STEP**0.5 * torch.randn(paths)
+            peak = torch.maximum(peak, delta.abs())
+
+    return run
+
+
+def torch_in_place(paths, steps):
     """Run tensor operations in place, single precision."""
     import torch
 
@@ -52,8 +69,8 @@ def jax_scan(paths, steps):
     return lambda: jax.block_until_ready(march(jax.random.key(1)))
 
 
-def diffrax_solve(paths, steps):
-    """Solve by Diffrax's Euler method on its fastest Brownian path, without the maximum."""
+def diffrax_solve(paths, steps, brownian=None, **options):
+    """Solve by Diffrax's Euler method, without the maximum, as its manual shows."""
     import diffrax
     import jax
     import jax.numpy as jnp
@@ -65,7 +82,11 @@ def diffrax_solve(paths, steps):
         return jnp.array([[1.0], [0.0]])
 
     def solve(key):
-        noise = diffrax.UnsafeBrownianPath(shape=(1,), key=key)
+        noise = (
+            brownian(key)
+            if brownian
+            else diffrax.VirtualBrownianTree(0.0, steps * STEP, tol=STEP / 2, shape=(1,), key=key)
+        )
         terms = diffrax.MultiTerm(diffrax.ODETerm(drift), diffrax.ControlTerm(diffusion, noise))
         return diffrax.diffeqsolve(
             terms,
@@ -75,23 +96,35 @@ def diffrax_solve(paths, steps):
             STEP,
             jnp.zeros(2),
             max_steps=steps + 1,
-            adjoint=diffrax.ForwardMode(),
+            **options,
         ).ys
 
     march = jax.jit(jax.vmap(solve))
     return lambda: jax.block_until_ready(march(jax.random.split(jax.random.key(1), paths)))
 
 
+def diffrax_fastest(paths, steps):
+    """Solve by Diffrax on its fastest Brownian path, which cannot be differentiated through."""
+    import diffrax
+
+    def brownian(key):
+        return diffrax.UnsafeBrownianPath(shape=(1,), key=key)
+
+    return diffrax_solve(paths, steps, brownian, adjoint=diffrax.ForwardMode())
+
+
 PEERS = {
     "torch": (torch_loop, (1_000, 10_000, 100_000)),
+    "torch, in place": (torch_in_place, (1_000, 10_000, 100_000)),
     "jax": (jax_scan, (1_000, 10_000, 100_000)),
     "diffrax": (diffrax_solve, (1_000, 10_000)),
+    "diffrax, fastest": (diffrax_fastest, (1_000, 10_000)),
 }
 
 
 def nanoseconds(make, paths):
     """Time a run of about a second after a first one that compiles."""
-    steps = max(10, 20_000_000 // paths // (10 if make is diffrax_solve else 1))
+    steps = max(10, 20_000_000 // paths // (10 if make in (diffrax_solve, diffrax_fastest) else 1))
     run = make(paths, steps)
     run()
     began = time.perf_counter()

@@ -22,7 +22,7 @@ from nonsmooth.panel import new_panel
 from nonsmooth.streams import BLOCK, normals
 from nonsmooth.trajectories import gram
 
-ROUNDS = 5
+ROUNDS = 7
 STEP = 0.02
 FRICTION = ns.Scene("friction", n=100)
 OTHERS = {
@@ -70,7 +70,7 @@ def timed(run, path_steps):
 
 def contestants(threads):
     """Name -> a function that returns nanoseconds per path-step and core."""
-    blocks, steps = 32 * threads, 2_000
+    blocks, steps = 32 * threads, 10_000
 
     def moments(scene, precision="float32", control=False, share=1):
         paths, horizon = blocks * BLOCK // share, STEP * steps
@@ -116,9 +116,9 @@ def contestants(threads):
                 lambda: plain_loop(100, 20_000, STEP, 100.0), 2_000_000
             ),
             "friction, white: with control variate": moments(FRICTION, control=True),
-            "friction, white: double precision": moments(FRICTION, "float64", share=8),
+            "friction, white: double precision": moments(FRICTION, "float64", share=32),
         }
-        result |= {name: moments(scene, share=4) for name, scene in OTHERS.items()}
+        result |= {name: moments(scene, share=16) for name, scene in OTHERS.items()}
     return result
 
 
@@ -135,7 +135,7 @@ def main(python=None):
     runs = {(name, 1): run for name, run in contestants(1).items()}
     runs |= {(name, cores): run for name, run in contestants(cores).items()}
     if python:
-        for name in ("torch", "jax", "diffrax"):
+        for name in ("torch", "torch, in place", "jax", "diffrax", "diffrax, fastest"):
             runs[f"{name} (peer)", 1] = lambda name=name: peer(python, name)
     for run in runs.values():
         run()  # compiles

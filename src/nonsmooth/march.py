@@ -6,7 +6,7 @@ from numba.extending import intrinsic, overload
 
 from nonsmooth.elementary import fma, like
 from nonsmooth.kernels import inlined, kernel
-from nonsmooth.panel import BASE, BEFORE, DELTA, FLUSH, ROWS, WIDTH, flush, retire
+from nonsmooth.panel import BASE, BEFORE, DELTA, FLUSH, ROWS, WIDTH, flush, observe, retire
 from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, strang
 from nonsmooth.streams import normals
 
@@ -80,7 +80,9 @@ def march(s, panel, lanes, steps, threshold):
     normal = 2
     for k in range(steps + 1):
         _flow(s, data, k == 0, k == steps, lanes)
-        if k < steps:
+        if k == steps:
+            observe(data, lanes)  # what the last flow has added
+        else:
             if normal >= 2:
                 normals(words, data, lanes)
                 if s.normals == 4:
@@ -125,7 +127,10 @@ def march_pair(fine, coarse, panel, other, lanes, steps, threshold, began, passa
         _flow(fine, data, k == 0, k == 2 * steps, lanes)
         if not odd:
             _flow(coarse, joined, k == 0, k == 2 * steps, lanes)
-        if k < 2 * steps:
+        if k == 2 * steps:
+            observe(data, lanes)
+            observe(joined, lanes)
+        else:
             normal = 1 if odd and fine.normals == 1 else 0
             if normal == 0:
                 normals(words, data, lanes)

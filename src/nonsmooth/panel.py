@@ -15,6 +15,7 @@ from nonsmooth.streams import BLOCK, generator_words
 
 FLUSH = 64  # steps between additions in double precision
 
+_CACHE_LINE = 64  # bytes
 # A row's width is an odd number of cache lines, so that equal places in two rows never share a
 # cache set.
 WIDTH = BLOCK + 16
@@ -59,12 +60,20 @@ def new_panel(scene, seed, block, precision="float32"):
     block : int
     precision : {"float32", "float64"}
     """
-    data = np.zeros((ROWS, WIDTH), dtype=precision)
+    data = _aligned(ROWS, precision)
     for row, symbol in zip(STATE, STATE_VARIABLES, strict=True):
         data[row] = scene.start.get(symbol.name, 0.0)
-    words = np.zeros((4, WIDTH), dtype=np.uint32)
+    words = _aligned(4, "uint32")
     words[:, :BLOCK] = generator_words(scene, seed, block)
-    return Panel(words, data, np.zeros((3, WIDTH)))
+    return Panel(words, data, _aligned(3, "float64"))
+
+
+def _aligned(rows, kind):
+    """Zeros whose rows start at cache lines, so that no vector straddles two."""
+    size = rows * WIDTH * np.dtype(kind).itemsize
+    memory = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
+    first = -memory.ctypes.data % _CACHE_LINE
+    return memory[first : first + size].view(kind).reshape(rows, WIDTH)
 
 
 @inlined

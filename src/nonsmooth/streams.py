@@ -2,9 +2,9 @@
 
 The generator is xoshiro128++ 1.0 (D. Blackman, S. Vigna, ACM Trans. Math. Softw. 47, 2021):
 128 bits of state and 32 bits per draw, which is what the lanes of a vector register hold. Each
-path has a generator of its own, seeded with 128 bits of numpy's SeedSequence. Two draws become
-two normal numbers (Box and Muller 1958). A radius has a resolution of 2^-32, so that normals
-reach 6.66 standard deviations.
+path has a generator of its own; the 128 bits that seed each are drawn from SFC64, which numpy's
+SeedSequence seeds with (seed, scene, block). Two draws become two normal numbers (Box and Muller
+1958); the first has a resolution of 2^-32, so that they reach 6.66 standard deviations.
 
 The penalization n does not enter: scenes that differ only in n are driven by the same noise.
 """
@@ -50,7 +50,8 @@ def generator_words(scene, seed, block):
     identity = repr((scene.identity, labels)).encode()
     key = int.from_bytes(hashlib.sha256(identity).digest()[:8], "big")
     sequence = np.random.SeedSequence(int(entropy), spawn_key=(key, block))
-    return np.ascontiguousarray(sequence.generate_state(4 * BLOCK).reshape(BLOCK, 4).T)
+    words = np.random.SFC64(sequence).random_raw(2 * BLOCK).astype("<u8").view(np.uint32)
+    return np.ascontiguousarray(words.reshape(BLOCK, 4).T)
 
 
 def blocks(first, count):

@@ -65,8 +65,8 @@ def gram(
         If a parameter is out of range or a path diverges.
     """
     grid = equal_steps(times, step)
-    table = poisson_slope(scene) if control else (1.0, np.zeros(0))
-    coefficients = [schemes.coefficients(scene, scheme, h, precision, *table) for _, h in grid]
+    slope = poisson_slope(scene) if control else None
+    coefficients = [schemes.coefficients(scene, scheme, h, precision, slope) for _, h in grid]
 
     def run(job):
         block, count = job
@@ -111,12 +111,22 @@ def paths_at(scene, times, step, paths, seed, scheme="strang"):
     return np.concatenate(results, axis=2)
 
 
-def coupled(scene, times, step, paths, seed, threads=None, threshold=np.inf, scheme="strang"):
-    """Simulate paths with a step and with half of it on the same noise, in double precision.
+def coupled(
+    scene,
+    times,
+    step,
+    paths,
+    seed,
+    threads=None,
+    threshold=np.inf,
+    scheme="strang",
+    precision="float32",
+):
+    """Simulate paths with a step and with half of it on the same noise.
 
     Parameters
     ----------
-    scene, times, paths, seed, threads, scheme
+    scene, times, paths, seed, threads, scheme, precision
         As for `gram`.
     step : float
         The longer of the two steps, "1".
@@ -132,13 +142,13 @@ def coupled(scene, times, step, paths, seed, threads=None, threshold=np.inf, sch
     """
     grid = equal_steps(times, step)
     pairs = [
-        tuple(schemes.coefficients(scene, scheme, length, "float64") for length in (h / 2, h))
+        tuple(schemes.coefficients(scene, scheme, length, precision) for length in (h / 2, h))
         for _, h in grid
     ]
 
     def run(job):
         block, count = job
-        panel, other = (new_panel(scene, seed, block, "float64") for _ in range(2))
+        panel, other = (new_panel(scene, seed, block, precision) for _ in range(2))
         passage = np.full((2, count), np.inf)
         products = np.empty((len(grid), 3, 3))
         vector = np.ones((3, count))

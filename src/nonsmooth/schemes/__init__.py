@@ -16,8 +16,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 
-from scipy.ndimage import gaussian_filter1d
-
 from nonsmooth.errors import SceneError
 from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, strang
 
@@ -80,16 +78,18 @@ def scheme(scene, name="strang"):
     return SCHEMES[name]
 
 
-def coefficients(scene, name, step, precision="float32", reach=1.0, control=()):
-    """Return the coefficients of a step, with the table of a control variate if there is one."""
+def coefficients(scene, name, step, precision="float32", control=None):
+    """Return the coefficients of a step, with a control variate if there is a `PoissonSlope`."""
     s = scheme(scene, name).module.coefficients(scene, step, precision)
-    if len(control) == 0 or "control" not in s._fields:
+    if control is None or "control" not in s._fields:
         return s
-    # what a kick does to u, projected on its first two Hermite polynomials, is u' and u'' averaged
-    # over the kick
-    width = float(s.factor[0]) / (2 * reach / (len(control) - 1))
-    averaged = gaussian_filter1d(control, width, mode="nearest")
-    return s._replace(reach=type(s.step)(reach), control=averaged.astype(precision))
+    number = type(s.step)
+    polynomial = control.polynomial(float(s.factor[0]))
+    return s._replace(
+        controlled=True,
+        reach=number(control.reach),
+        control=tuple(map(number, polynomial)),
+    )
 
 
 def on_given_increments(s):

@@ -27,6 +27,7 @@ import scipy.linalg
 import sympy
 
 from nonsmooth import flows, models
+from nonsmooth.control import DEGREE
 from nonsmooth.elementary import fma, like, maximum, minimum
 from nonsmooth.expressions import compiled, evaluate
 from nonsmooth.kernels import inlined
@@ -60,7 +61,7 @@ class Strang(NamedTuple):
     `transition` (2 x 2, row by row, less the identity) and `factor` (lower triangle) are the
     exact Gaussian step of the linear noise's (zeta, eta), or of one variable alone in the first
     entries. `slope`, `first_drift`, `second_drift` and `formula` are addresses of U', the noise's
-    drifts and g. `control` tabulates the integrand of the control variate on [-reach, reach].
+    drifts and g. `control` is the polynomial in y / reach of the control variate's integrand.
     """
 
     step: float
@@ -83,8 +84,9 @@ class Strang(NamedTuple):
     first_drift: int
     second_drift: int
     formula: int
+    controlled: bool
     reach: float
-    control: np.ndarray
+    control: tuple
 
 
 @lru_cache(maxsize=1024)
@@ -138,8 +140,9 @@ def coefficients(scene, step, precision="float32"):
         first_drift=formula(scene.noise.drift.get(scene.noise.driven, 0)),
         second_drift=formula(scene.noise.drift.get(models.eta, 0)),
         formula=formula(0 if scene.observes_penalty_force else scene.observable_expression),
+        controlled=False,
         reach=number(1.0),
-        control=np.zeros(0, dtype=precision),
+        control=(number(0),) * (DEGREE + 1),
     )
 
 
@@ -190,7 +193,7 @@ def flow(s, data, first, last, lanes):
 @inlined
 def kick(s, data, normal, lanes):
     """Noise step on the normal numbers in row `normal` and, if it takes two, the next row."""
-    if s.control.size > 0:
+    if s.controlled:
         _gather_martingale(s, data, normal, lanes)
     if s.noise == _WHITE and s.observable == _VELOCITY:
         _shake_and_observe_velocity(s, data, normal, lanes)
@@ -281,23 +284,21 @@ def _gain(s, data, lanes):
 def _gather_martingale(s, data, normal, lanes):
     """Add the martingale's increment, c kick + c' (kick^2 - its mean)/2, and its variance.
 
-    c = u' at the state before the kick, from its table: u(y + kick) - u(y) to second order, less
-    its mean, so that what is left does not grow with the square root of the step.
+    c = u' at the state before the kick: u(y + kick) - u(y) to second order, less its mean, so
+    that what is left does not grow with the square root of the step.
     """
-    control = s.control
-    last = control.size - 1
-    scale = like(s.reach, last) / (s.reach + s.reach)
+    one, two = like(s.reach, 1.0), like(s.reach, 2.0)
     for i in range(lanes):
-        place = (minimum(maximum(data[Y, i], -s.reach), s.reach) + s.reach) * scale
-        cell = min(np.int32(place), np.int32(last - 1))
-        part = place - like(place, cell)
-        rise = control[cell + 1] - control[cell]
-        first = s.factor[0] * fma(part, rise, control[cell])
-        second = s.factor[0] * s.factor[0] * scale * rise / like(scale, 2.0)
+        place = minimum(maximum(data[Y, i] / s.reach, -one), one)
+        value, slope = s.control[DEGREE], like(one, 0.0)
+        for k in range(DEGREE):
+            slope = fma(slope, place, value)
+            value = fma(value, place, s.control[DEGREE - 1 - k])
+        first = s.factor[0] * value
+        second = s.factor[0] * s.factor[0] / (two * s.reach) * slope
         kick = data[normal, i]
-        square = fma(kick, kick, like(scale, -1.0))
-        data[MARTINGALE, i] += fma(first, kick, second * square)
-        data[VARIATION, i] += fma(first, first, like(scale, 2.0) * second * second)
+        data[MARTINGALE, i] += fma(first, kick, second * fma(kick, kick, -one))
+        data[VARIATION, i] += fma(first, first, two * second * second)
 
 
 @inlined
