@@ -1,10 +1,10 @@
-# make paper · make test · make smoke · make lint · make lock · make clean
+# make paper · make test · make smoke · make lint · make benchmark · make lock · make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: env paper smoke test lint format lock clean
+.PHONY: env paper smoke test lint format benchmark lock clean
 
 paper: env
 	$(BIN)/snakemake --cores $(CORES)
@@ -25,6 +25,10 @@ format: env
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 	$(BIN)/snakefmt Snakefile workflow
+
+# PEERS: python of an environment made from benchmarks/peers.txt, to measure them too
+benchmark: env
+	$(BIN)/python -m benchmarks.speed $(PEERS)
 
 env: $(VENV)/installed
 

@@ -7,6 +7,7 @@ variance of the integral and of its square.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -61,6 +62,7 @@ class PoissonSlope:
         return chebyshev.cheb2poly(fit)
 
 
+@lru_cache(maxsize=64)
 def poisson_slope(scene):
     """Tabulate u' of a one-dimensional scene with white noise.
 

@@ -29,7 +29,7 @@ def test_example_runs():
     code = re.search(r"```python\n(.*?)```", README, flags=re.DOTALL)[1]
     exec(
         compile(
-            code.replace("p=10)", "p=1, paths=500)").replace("paths=1000", "paths=10"),
+            code.replace("p=10, tol=0.01", "p=1, tol=0.05"),
             "README",
             "exec",
         ),

@@ -42,7 +42,7 @@ def test_a_new_n_is_solved_alone(finished):
 
 def test_the_threshold_reruns_the_crossings_only(finished):
     """Changing b."""
-    edit(finished.folder / "config.yaml", "threshold: 0.6", "threshold: 0.7")
+    edit(finished.folder / "config.yaml", "threshold: 0.6\n  p:", "threshold: 0.7\n  p:")
     jobs = finished.jobs()
     assert {name for name in jobs if name.startswith("crossing")} == {
         "crossing_shard",
@@ -117,3 +117,25 @@ def test_named_targets(repository):
 def test_a_named_target_does_its_own_work_only(repository, target, jobs):
     """Nothing else is computed."""
     assert repository.jobs(target) == jobs
+
+
+def test_an_interrupted_run_is_resumed_to_the_same_bytes(finished):
+    """A lost shard, and what was made of it, come back as they were."""
+    lost = [
+        finished.folder / "results/smoke/variance" / name
+        for name in ("shards/1.nc", "monte_carlo.nc")
+    ]
+    before = [path.read_bytes() for path in lost]
+    for path in lost:
+        path.unlink()
+    run = finished.snakemake("--cores", "1", "--", "results/smoke/variance/monte_carlo.nc")
+    assert run.returncode == 0, run.stderr[-2000:]
+    assert [path.read_bytes() for path in lost] == before
+
+
+def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
+    """One job per scene."""
+    edit(finished.folder / "config/smoke.yaml", "sweep:\n  p: [10]", "sweep:\n  p: [10, 20]")
+    jobs = finished.jobs()
+    assert {name for name in jobs if name.startswith("sweep")} == {"sweep_crossing"}
+    assert jobs["sweep_crossing"] == 9

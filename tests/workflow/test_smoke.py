@@ -1,6 +1,7 @@
 """The whole workflow at reduced sizes: every rule, every figure and table, the same bytes."""
 
 import json
+import math
 import re
 import subprocess
 import sys
@@ -9,11 +10,12 @@ import pandas as pd
 import pytest
 import typst
 
+import nonsmooth as ns
 from nonsmooth import artifact
 
 RESULTS = "results/smoke"
-FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5"]
-TABLES = ["table_1", "table_2", "table_3", "table_4", "table_time_step"]
+FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"]
+TABLES = ["table_1", "table_2", "table_3", "table_4", "table_5", "table_time_step"]
 
 
 def test_every_figure_and_table_is_there(smoke_run):
@@ -68,6 +70,19 @@ def test_table_4_has_the_printed_values_beside_ours(smoke_run):
     assert (abs(table["printed"] - table["growth"])[known] < 1.2e-6).all()
     off = abs(table["finite_difference"] - table["growth"])[known]
     assert (off <= table["finite_difference_error"][known]).all()
+
+
+def test_table_5_has_every_scene_within_its_errors(smoke_run):
+    """Nine scenes; dry friction's gamma^2 is the closed form's, the elasto-plastic ones agree."""
+    table = pd.read_csv(smoke_run.folder / RESULTS / "tables" / "table_5.csv").set_index("scene")
+    assert len(table) == 9
+    exact = ns.asymptotic_variance(ns.Scene("friction", n=100)).value
+    row = table.loc["friction_white"]
+    allowed = 5 * math.hypot(row.gamma2_error, row.bias_error) + abs(row.bias)
+    assert abs(row.gamma2 - exact) < allowed
+    # a larger or a smaller probability than the limit's, but one
+    assert table["W_10"].between(0, 1).all()
+    assert (table["W_star_error"] < 0.1).all()
 
 
 def test_tables_are_valid_typst(smoke_run, tmp_path):

@@ -27,6 +27,7 @@ rule values:
         monte_carlo=rules.variance_monte_carlo.output[0],
         agreement=rules.check_variance.output[0],
         crossing=rules.check_crossing.output[0],
+        limit=rules.sweep_limit.output[0],
         convergence=rules.table_4.input.spectral,
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
@@ -44,6 +45,7 @@ rule values:
         horizon=lookup(dpath="convergence/horizon", within=config),
         scheme=lookup(dpath="convergence/finite_difference", within=config),
         trajectories=lookup(dpath="trajectories", within=config),
+        scenes=lookup(dpath="sweep", within=config),
         seed=lookup(dpath="seed", within=config),
     message:
         "Collect the numbers that the text quotes"

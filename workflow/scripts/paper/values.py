@@ -17,24 +17,26 @@ def values(
     monte_carlo,
     agreement,
     crossing,
+    limit,
     convergence,
     variance,
     sweep,
     horizon,
     scheme,
     trajectories,
+    scenes,
     seed,
 ):
     """Collect numbers from the artifacts and the configuration.
 
     Parameters
     ----------
-    spectral, monte_carlo, agreement, crossing : xarray.Dataset
+    spectral, monte_carlo, agreement, crossing, limit : xarray.Dataset
         The artifacts.
     convergence : list of xarray.Dataset
         Spectral solutions of table 4, one per n.
-    variance, sweep, trajectories : dict
-        Sections of the configuration.
+    variance, sweep, trajectories, scenes : dict
+        Sections of the configuration: figure 2a, figure 2b, trajectories, every scene.
     horizon, scheme
         Horizon and finite differences of table 4.
     seed : int
@@ -89,6 +91,17 @@ def values(
             "gamma2_error": _scientific(max(r["gamma2_error"] for r in convergence), bound=True),
         }
         | {key: f"{scheme[key]:g}" for key in ("half_width", "nodes", "time_step")},
+        "sweep": {
+            "paths": f"{scenes['paths']:,}",
+            "step": f"{scenes['step']:g}",
+            "settled": f"{scenes['variance']['times'][0]:g}",
+            "end": f"{scenes['variance']['times'][1]:g}",
+            "horizon": f"{scenes['horizon']:g}",
+            "n": ", ".join(
+                sorted({f"{entry['scene']['n']:g}" for entry in scenes["scenes"].values()})
+            ),
+            "allowed": f"{float(limit['allowed']):g}",
+        },
         "trajectories": {
             "step": f"{trajectories['step']:g}",
             "models": {

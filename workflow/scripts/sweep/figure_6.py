@@ -58,12 +58,10 @@ def sweep(crossing, limit, scenes, p):
     for row, model in zip(axes, rows, strict=True):
         row[0].set_ylabel(f"{MODELS[model].title.lower()}\n" + r"$W(\sqrt{p}\,b, pT)$")
     for panel, noise in zip(axes[0], columns, strict=True):
-        panel.set_title(
-            NOISES[noise].title.replace("colored noise of ", ""), fontsize=8, loc="left"
-        )
+        panel.set_title(f"{noise} noise", fontsize=8, loc="left")
     for panel in axes[-1]:
         panel.set_xlabel("$T$")
-    axes[0, 0].legend(loc="upper left")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
     axes[0, 0].set(xlim=(0, float(limit["horizon"][-1])), ylim=(0, None))
     return figure
 

@@ -62,6 +62,7 @@ def limit(variance, scenes, horizon, outputs):
         {
             "probability": (over, probability, "W_star(b / gamma, T)"),
             "probability_error": (over, probability_error, "error inherited from gamma^2"),
+            "allowed": ((), ALLOWED, "standard errors that a mean of zero may be off"),
         },
     )
 

@@ -3,7 +3,6 @@
 import pandas as pd
 
 from nonsmooth.models import MODELS
-from nonsmooth.noises import NOISES
 from nonsmooth.scene import Scene
 from nonsmooth.tables import scientific, typeset
 
@@ -43,7 +42,7 @@ def sweep(variance, crossing, limit, scenes, p):
         cells.append(
             {
                 "model": MODELS[scene.model].title,
-                "noise": NOISES[scene.noise.kind].title.replace("colored noise of ", ""),
+                "noise": scene.noise.kind,
                 "state": ", ".join(f"${_symbol(s)}$" for s in scene.state),
                 "$g$": f"${_symbol(scene.observable)}$",
                 "$b$": f"${parameters['threshold']:g}$",

@@ -1,0 +1,24 @@
+"""Intervals contain the truth as often as they say: a small version of the benchmark."""
+
+import numpy as np
+from scipy import stats
+
+from benchmarks.coverage import coverage
+
+RUNS = 150
+FALSE_ALARM = 1e-4
+
+
+def test_coverage():
+    """Every quantity within what chance allows about 95 %, itself allowed to be off by 2 %.
+
+    The small runs' own intervals are approximate: what the benchmark of 1000 runs asks for is
+    between 93 and 97 %.
+    """
+    table = coverage(RUNS, truth_paths=10_000_000)
+    level = FALSE_ALARM / 2 / len(table)
+    least, most = stats.binom.ppf(level, RUNS, 0.93), stats.binom.isf(level, RUNS, 0.97)
+    hits = np.rint(table["covered"] * RUNS)
+    assert len(table) == 9
+    assert (hits >= least).all(), table
+    assert (hits <= most).all(), table
