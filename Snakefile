@@ -3,7 +3,7 @@
 import sys
 
 from workflow.dependencies import sources
-from workflow.experiment import check, finite, halving_paths, label, part, shards
+from workflow.experiment import check, finite, halving_paths, label, part, shards, sweep_halving
 from nonsmooth.errors import NonsmoothError
 
 

@@ -16,7 +16,7 @@ from nonsmooth.trajectories import gram, moments
 FRICTION = ns.Scene("friction", n=100)
 # the restoring force's gamma^2 is the forcing's spectrum at 0, whatever the yield
 BALANCE = ns.Scene("elasto_plastic", n=np.inf, potential="x**2/2", observable="x + y")
-TIMES = (10.0, 60.0)
+TIMES = (10.0, 30.0, 60.0)
 RARE, RARE_HORIZON, RARE_STEP = 1.24, 1.0, 0.02  # a threshold crossed once in ten thousand
 
 

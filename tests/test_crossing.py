@@ -86,7 +86,7 @@ def test_halving_shifts_the_passage_times_by_the_bias_of_the_variance():
     assert count > 19_900
     # the variance's halving at the same step, from independent samples
     change, _ = coupled(SCENE, [20.0], 0.2, 50_000, 7)
-    bias, spread = step_bias(change, np.zeros(1), np.inf)
+    bias, spread = step_bias(change, np.inf)
     v = float(ns.variance(SCENE, [20.0])["v"][0])
     relative, relative_error = bias[0] / v, spread[0] / v
     # finite p: passage times are those of a Brownian motion up to p^-1/2 = 0.32
@@ -109,6 +109,8 @@ def test_divergence_is_an_error():
         ({"method": "montecarlo"}, "monte_carlo"),
         ({"step": -0.1}, "step > 0"),
         ({"paths": 0}, "paths > 0"),
+        ({"paths": 1e2}, "whole number"),
+        ({"horizons": []}, "sort them"),
         ({"horizons": [0.0, 1.0]}, "sort them"),
         ({"horizons": [1.0, 0.5]}, "sort them"),
         ({"tol": 0.0}, "tol > 0"),

@@ -132,3 +132,12 @@ def test_dry_friction_at_rest_is_the_penalised_flow_without_drive():
         general = flows.penalised(z, t, 0.0, 0.0, 1 / n, n, 0.0)
         assert flows.at_rest(z, t, 1 / n, n) == pytest.approx(general, abs=1e-13)
     assert flows.at_rest(0.3, 0.5, 0.0, 1.0) == flows.dry_friction(0.3, 0.5, 0.0, 0.0) == 0.0
+
+
+def test_what_is_not_a_number_stays_so():
+    """In either argument, so that a diverged path is seen."""
+    for name in FLOWS:
+        for z, drive in ((np.nan, 0.3), (0.3, np.nan)):
+            if name != "at rest" or np.isnan(z):
+                for kind in (np.float32, np.float64):
+                    assert np.isnan(FLOWS[name](kind(z), kind(0.1), kind(drive))), name

@@ -158,7 +158,7 @@ class TestOrder:
         scene, order, error = ns.Scene("friction", n=10), [], []
         for h in (0.05, 0.025):
             change, _ = trajectories.coupled(scene, [5.0], h, 100_000, 5, scheme="euler_maruyama")
-            bias, spread = trajectories.step_bias(change, np.zeros(1), 1.0)
+            bias, spread = trajectories.step_bias(change, 1.0)
             order.append(np.log2(bias[0]))
             error.append(spread[0] / bias[0] / np.log(2))
         assert np.hypot(*error) < 0.02
@@ -211,8 +211,11 @@ class TestStability:
         for h, stable in ((min(0.9 * longest, 0.5), True), (1.2 * longest, False)):
             if np.isfinite(h):
                 panel = new_panel(scene, 2, 0)
-                panel.data[X] += 50.0  # so far that overshooting the dead zone does not save it
-                march(coefficients(scene, name, h), panel, 1024, 2000, np.inf)
+                panel.data[Y if model == "friction" else X] += (
+                    50.0  # so far that overshooting the dead zone does not save it
+                )
+                s = SCHEMES[name].module.coefficients(scene, h)
+                march(s, panel, 1024, 2000, np.inf)
                 bounded = np.max(np.abs(panel.data[list(STATE), :1024])) < 100
                 assert bounded == stable
 
@@ -228,6 +231,21 @@ class TestStability:
         # inside a contact part of the energy is elastic: those lanes have |x| > 1
         mean, error = np.mean(squares), np.std(squares) / np.sqrt(np.size(squares))
         assert abs(mean - 0.5) < stats.norm.isf(FALSE_ALARM / 2) * error
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "step"),
+    [
+        (ns.Scene("elasto_plastic", potential="4000*x**2"), "strang", 0.05),
+        (ns.Scene("friction", ns.Langevin("50*eta**4 + eta**2")), "strang", 0.05),
+        (ns.Scene("friction", n=1e4), "euler_maruyama", 1e-3),
+    ],
+)
+def test_unstable_steps_are_refused(scene, name, step):
+    """Paths that blow up would count as crossings; the message has the longest step."""
+    with pytest.raises(SceneError, match=r"unstable with step .* choose one below"):
+        coefficients(scene, name, step)
+    assert coefficients(scene, name, SCHEMES[name].longest_step(scene) / 2) is not None
 
 
 def test_requests_that_no_scheme_can_meet():

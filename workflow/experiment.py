@@ -40,6 +40,9 @@ def check(config):
                 f"integer, so that the mesh can be halved; use {nodes // 4 * 4 + 1}"
             )
     _check_times(config["variance"])
+    times = config["sweep"]["variance"]["times"]
+    if sorted(set(times)) != times:
+        raise ConfigError(f"config: 'sweep.variance.times' = {times} must increase; sort them")
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
     for model, parameters in config["trajectories"]["models"].items():
@@ -104,6 +107,11 @@ def part(topic, shard):
 def halving_paths(topic, p):
     """Spend on every p what the largest costs, as far as the samples themselves go."""
     return min(topic["paths"], round(topic["halving"]["paths"] * max(topic["p"]) / float(p)))
+
+
+def sweep_halving(topic, p):
+    """Fewer paths for the halving of longer runs, by which the standard error shrinks too."""
+    return max(1_000, round(topic["halving_paths"] / max(1.0, float(p) / 100)))
 
 
 def finite(numbers):

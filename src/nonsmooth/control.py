@@ -86,7 +86,7 @@ def poisson_slope(scene):
         reach *= 1.1
     y = np.linspace(-reach, reach, _POINTS)
     density = np.exp(-depth(y))
-    g = vectorised(scene.observable_expression, (models.y,))(y) - spectral.mean(scene)
+    g = vectorised(scene.numerical_observable(), (models.y,))(y) - spectral.mean(scene)
     left = cumulative_simpson(g * density, x=y, initial=0)
     flux = np.where(y < 0, -left, left[-1] - left)
     return PoissonSlope(reach, 2 / scene.noise.sigma**2 * flux / density, density)

@@ -11,7 +11,14 @@ from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
 from nonsmooth.times import equal_steps
-from nonsmooth.trajectories import coupled, parallel, require_finite, require_positive
+from nonsmooth.trajectories import (
+    coupled,
+    parallel,
+    require_count,
+    require_finite,
+    require_increasing,
+    require_positive,
+)
 from nonsmooth.variance import asymptotic_variance, stationary_mean
 
 _LONGEST_STEP = 0.1  # times the smaller of 1 and 1/C_b
@@ -200,22 +207,22 @@ def crossing_probability(
     for name, value in (("threshold", threshold), ("p", p), ("tol", tol)):
         require_positive(name, value)
     horizons = np.atleast_1d(np.asarray(horizons, dtype=float))
-    if not (horizons[0] > 0 and np.all(np.diff(horizons) > 0)):
-        raise SceneError("the horizons must be positive and increase; sort them")
+    require_increasing("horizons", horizons)
     attributes = {}
     if method == "monte_carlo":
         paths = int(np.ceil(1 / tol**2)) if paths is None else paths
-        require_positive("paths", paths)
+        require_count("paths", paths)
         fewer = min(paths, max(_PILOT_PATHS, paths // 8))
         problem = (scene, threshold, horizons, p)
         if step is None:
+            chosen = schemes.scheme(scene)
             step = _LONGEST_STEP * min(1.0, 1 / scene.damping)
+            step = min(step, chosen.longest_step(scene) / 4)
             bias, error = first_passage_bias(
                 *problem, step, fewer, labelled(seed, "pilot"), threads
             )
-            order = schemes.scheme(scene, "strang").weak_order(scene)
             worst = np.max(np.abs(bias) + error)
-            step = float(step * min(1.0, (tol / 2 / worst) ** (1 / order)))
+            step = float(step * min(1.0, (tol / 2 / worst) ** (1 / chosen.weak_order(scene))))
         require_positive("step", step)
         crossed = first_passage_counts(
             *problem, step, paths, seed, threads=threads, precision=precision
@@ -226,8 +233,8 @@ def crossing_probability(
         )
         attributes = {"step": step, "paths": paths}
     elif method == "asymptotic":
-        mean, uncertainty = stationary_mean(scene)
-        gamma2 = asymptotic_variance(scene)
+        mean, uncertainty = stationary_mean(scene, seed, threads)
+        gamma2 = asymptotic_variance(scene, seed=seed, threads=threads)
         if abs(mean) > max(1e-8 * np.sqrt(gamma2.value), 5 * uncertainty):
             raise SceneError(
                 f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
@@ -250,11 +257,14 @@ def crossing_probability(
 
 
 def crossing_estimate(crossed, paths):
-    """Turn numbers of crossed paths into `probability`, its standard error and 95 % limits."""
+    """Turn numbers of crossed paths into `probability`, its standard error and 95 % limits.
+
+    The standard error is that of Jeffreys' beta law, so that it is not 0 where none has crossed.
+    """
     probability, lower, upper = proportion(crossed, paths)
     return {
         "probability": probability,
-        "probability_error": np.sqrt(probability * (1 - probability) / paths),
+        "probability_error": stats.beta(crossed + 0.5, paths - crossed + 0.5).std(),
         "lower": lower,
         "upper": upper,
     }

@@ -81,25 +81,40 @@ def where(typing, condition, x, y):
     return x(types.boolean, x, x), generate
 
 
-def _extremum(name):
-    """Return the intrinsic of the C library's fmax or fmin, for arguments that are numbers."""
+def _extremum(comparison, documentation):
+    """Declare the choice of y where `y comparison x` holds, else x: what one instruction does."""
 
     @intrinsic
     def extremum(typing, x, y):
         def generate(context, builder, signature, arguments):
-            kind = arguments[0].type
-            function = builder.module.declare_intrinsic(
-                name, [kind], ir.FunctionType(kind, [kind, kind])
-            )
-            return builder.call(function, arguments, fastmath=("nnan",))
+            first, second = arguments
+            chosen = builder.fcmp_ordered(comparison, second, first)
+            return builder.select(chosen, second, first)
 
         return x(x, x), generate
 
+    extremum.__doc__ = documentation
     return extremum
 
 
-maximum = _extremum("llvm.maxnum")
-minimum = _extremum("llvm.minnum")
+maximum = _extremum(">", "The larger number; x if either is not a number.")
+minimum = _extremum("<", "The smaller number; x if either is not a number.")
+
+
+@intrinsic
+def larger(typing, x, y):
+    """Return the larger number, the other one if one is not a number.
+
+    Unlike `maximum` it stays one instruction where the result is stored in the place of x.
+    """
+
+    def generate(context, builder, signature, arguments):
+        kind = arguments[0].type
+        signature = ir.FunctionType(kind, [kind, kind])
+        function = builder.module.declare_intrinsic("llvm.maxnum", [kind], signature)
+        return builder.call(function, arguments)
+
+    return x(x, x), generate
 
 
 @intrinsic
@@ -175,7 +190,7 @@ def _log1p(x):
     u = _F(1.0) + x
     k, f = _split(u)
     # what rounding took from u, over u where that is below 2 (elsewhere it does not matter)
-    lost = (x - (u - _F(1.0))) * maximum(_F(1.5) - _F(0.5) * u, _F(0.0))
+    lost = where(u < _F(2.0), (x - (u - _F(1.0))) * (_F(1.5) - _F(0.5) * u), _F(0.0))
     return fma(k, _F(0.693147181), fma(f * f, _horner(_LOG, f), f + lost))
 
 

@@ -98,7 +98,12 @@ def parse(text, variables):
         ) from None
     # sympify evaluates strings, so it must never see one
     expression = sympy.sympify(value) if isinstance(value, int | float | sympy.Expr) else None
-    if not isinstance(expression, sympy.Expr) or expression.is_extended_real is False:
+    infinite = (sympy.zoo, sympy.nan, sympy.oo, -sympy.oo)
+    if (
+        not isinstance(expression, sympy.Expr)
+        or expression.is_extended_real is False
+        or expression.has(*infinite)
+    ):
         raise ExpressionError(f"the formula {text!r} is not a real expression; write arithmetic")
     return expression
 

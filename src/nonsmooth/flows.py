@@ -98,7 +98,7 @@ def dry_friction(z, t, drive, rate):
     speed = one - side * drive  # towards 0, and there
     need = _arrival(size, speed, rate, one / rate)
     slips = t < need
-    place = where(slips, size, like(z, 0.0))
+    place = where(slips, size, size * like(z, 0.0))  # not a number stays one
     slip = side * drive - minimum(maximum(side * drive, -one), one)
     outward = where(slips, -fma(rate, size, speed), slip)
     left = where(slips, t, t - need)

@@ -9,17 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from nonsmooth import schemes
-from nonsmooth.control import poisson_slope
-from nonsmooth.march import march
-from nonsmooth.panel import new_panel
-from nonsmooth.streams import blocks
 from nonsmooth.times import equal_steps
-from nonsmooth.trajectories import coupled, parallel, require_finite, step_bias
+from nonsmooth.trajectories import coupled, over_blocks, step_bias
 
 
 @dataclass(frozen=True)
 class Growth:
-    """Slopes of the mean and of the variance of D between two times.
+    """Slopes of the mean and of the variance of D between the first and the last of three times.
 
     Attributes
     ----------
@@ -27,12 +23,22 @@ class Growth:
         gamma^2 and its standard error.
     mean, mean_error : float
         Stationary mean of g and its standard error.
+    settling, settling_error : float
+        By how much the slope of the second half exceeds that of the first, and its standard
+        error: 0 within the error once the scene has forgotten its start and its correlations.
     """
 
     rate: float
     rate_error: float
     mean: float
     mean_error: float
+    settling: float
+    settling_error: float
+
+    @property
+    def settled(self):
+        """Whether both halves agree within four standard errors, or to a thousandth."""
+        return abs(self.settling) <= max(4 * self.settling_error, 1e-3 * abs(self.rate))
 
 
 def integrals(
@@ -50,54 +56,65 @@ def integrals(
     numpy.ndarray, shape (t, 3, paths)
         D, M and <M>; the last two are 0 without a control variate.
     """
-    grid = equal_steps(times, step)
-    slope = poisson_slope(scene) if control else None
-    coefficients = [schemes.coefficients(scene, "strang", h, precision, slope) for _, h in grid]
-
-    def run(job):
-        block, count = job
-        panel = new_panel(scene, seed, block, precision)
-        kept = []
-        for (steps, _), s in zip(grid, coefficients, strict=True):
-            march(s, panel, count, steps, np.inf)
-            kept.append(panel.total[:, :count].copy())
-        return np.array(kept)
-
-    results = parallel(run, blocks(first_path, paths), threads)
-    require_finite(results)
+    results = over_blocks(
+        scene,
+        equal_steps(times, step),
+        paths,
+        seed,
+        lambda *integrals: np.array(integrals),
+        first_path,
+        threads,
+        "strang",
+        precision,
+        control,
+    )
     return np.concatenate(results, axis=2)
 
 
 def growth(sample, times):
-    """Estimate the slopes from a sample of `integrals` at two times.
+    """Estimate the slopes from a sample of `integrals`.
 
     Parameters
     ----------
-    sample : numpy.ndarray, shape (2, 3, paths)
-    times : tuple of float
+    sample : numpy.ndarray, shape (3, 3, paths)
+    times : sequence of float, three increasing ones
 
     Returns
     -------
     Growth
     """
-    (d1, m1, q1), (d2, m2, q2) = sample
-    span, paths = times[1] - times[0], len(d1)
-    square = ((d2 - d2.mean()) ** 2 - (d1 - d1.mean()) ** 2) / span * (paths / (paths - 1))
-    rate, rate_error = _regressed(square, (m2**2 - q2 - m1**2 + q1) / span)
-    mean, mean_error = _regressed((d2 - d1) / span, (m2 - m1) / span)
-    return Growth(rate, rate_error, mean, mean_error)
+    first, second, whole = (
+        _slopes(sample[[i, k]], times[k] - times[i]) for i, k in ((0, 1), (1, 2), (0, 2))
+    )
+    settling = second[0] - first[0]
+    return Growth(*whole, settling, float(np.hypot(first[1], second[1])))
 
 
 def growth_bias(scene, times, step, paths, seed, threads=None):
     """Bias of gamma^2 by the time step, as measured by halving it, and its standard error.
 
-    The error is that of two independent variances, which is larger than that of the slope.
+    Parameters
+    ----------
+    scene, times, step, paths, seed, threads
+        As for `integrals`; the slope is from the first to the last time.
+
+    Returns
+    -------
+    bias, error : float
+        The error is that of two independent variances, which is larger than that of the slope.
     """
-    change, _ = coupled(scene, times, step, paths, seed, threads)
-    order = schemes.scheme(scene, "strang").weak_order(scene)
-    bias, error = step_bias(change, np.zeros(2), order)
-    span = times[1] - times[0]
-    return (bias[1] - bias[0]) / span, np.hypot(*error) / span
+    change, _ = coupled(scene, [times[0], times[-1]], step, paths, seed, threads)
+    bias, error = step_bias(change, schemes.scheme(scene, "strang").weak_order(scene))
+    span = times[-1] - times[0]
+    return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
+
+
+def _slopes(sample, span):
+    (d1, m1, q1), (d2, m2, q2) = sample
+    paths = len(d1)
+    square = ((d2 - d2.mean()) ** 2 - (d1 - d1.mean()) ** 2) / span * (paths / (paths - 1))
+    rate = _regressed(square, (m2**2 - q2 - m1**2 + q1) / span)
+    return *rate, *_regressed((d2 - d1) / span, (m2 - m1) / span)
 
 
 def _regressed(values, control):

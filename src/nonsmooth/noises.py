@@ -49,6 +49,7 @@ class White:
 
     def __post_init__(self):
         _require_positive("sigma", self.sigma)
+        object.__setattr__(self, "sigma", float(self.sigma))
 
     @property
     def drift(self):

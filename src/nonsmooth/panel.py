@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonsmooth.elementary import maximum
+from nonsmooth.elementary import larger
 from nonsmooth.kernels import inlined, kernel
 from nonsmooth.models import STATE_VARIABLES
 from nonsmooth.streams import BLOCK, generator_words
@@ -82,7 +82,7 @@ def observe(data, lanes):
     for i in range(lanes):
         delta = data[DELTA, i] + data[GAIN, i]
         data[DELTA, i] = delta
-        data[PEAK, i] = maximum(data[PEAK, i], abs(data[BASE, i] + delta))
+        data[PEAK, i] = larger(data[PEAK, i], abs(data[BASE, i] + delta))
         data[GAIN, i] = 0
 
 
@@ -101,11 +101,12 @@ def flush(data, total, lanes):
 def retire(words, data, total, lanes, threshold):
     """Drop the lanes whose |int g| has reached the threshold; return how many are left.
 
-    The last lane takes the place of a dropped one, so that those left stay side by side.
+    A path that has left every bound stays, so that it is seen at the end. The last lane takes the
+    place of a dropped one, so that those left stay side by side.
     """
     i = 0
     while i < lanes:
-        if data[PEAK, i] >= threshold:
+        if threshold <= data[PEAK, i] < np.inf:
             lanes -= 1
             words[:, i] = words[:, lanes]
             data[:, i] = data[:, lanes]

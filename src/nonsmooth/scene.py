@@ -1,6 +1,7 @@
 """A scene: mechanical model + noise + potential + damping + penalization + observable."""
 
 import difflib
+import math
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -71,7 +72,14 @@ class Scene:
                 raise SceneError(
                     f"a scene needs a number for {name}, got {getattr(self, name)!r}; choose one"
                 ) from None
-        start = {name: float(value) for name, value in sorted(self.start.items())}
+        try:
+            start = {name: float(value) for name, value in sorted(self.start.items())}
+        except (AttributeError, TypeError, ValueError):
+            raise SceneError(
+                f"start = {self.start!r} is not a dict of numbers; write for example {{'y': 1.0}}"
+            ) from None
+        if not all(map(math.isfinite, start.values())):
+            raise SceneError(f"start = {start} is not finite; choose finite numbers")
         object.__setattr__(self, "start", start)
         for name, value in (("n", self.n), ("damping", self.damping)):
             if not value > 0:
@@ -200,7 +208,20 @@ class Scene:
         return {s: self._with_numbers(expression) for s, expression in self.drift.items()}
 
     def numerical_observable(self):
-        """Return `observable_expression` with the scene's n."""
+        """Return `observable_expression` with the scene's n; Sgn(y) is sign(y).
+
+        Raises
+        ------
+        SceneError
+            If g is the force of a wall that is rigid, n = inf.
+        """
+        if self.observes_penalty_force and self.n == float("inf"):
+            if self.mechanics.velocity_penalty == 0:
+                raise SceneError(
+                    f"at n = inf the {self.observable} is not a function of the state; "
+                    "use Monte Carlo, which integrates it, or a finite n"
+                )
+            return sympy.sign(models.y)
         return self._with_numbers(self.observable_expression)
 
     def _with_numbers(self, expression):

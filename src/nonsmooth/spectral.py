@@ -129,7 +129,7 @@ def assemble(scene, degree):
     edges = mesh(scene)
     energy, _ = potential(scene)
     depth = vectorised(energy, (models.y,))
-    g = vectorised(scene.observable_expression, (models.y,))
+    g = vectorised(scene.numerical_observable(), (models.y,))
     nodes, points, weights, values, slopes = _reference_element(degree)
     size = (len(edges) - 1) * degree + 1
     mass, stiffness, observable = np.zeros((3, size, size))

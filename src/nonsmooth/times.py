@@ -32,6 +32,8 @@ def equal_steps(times, step):
     times = np.asarray(times, dtype=float)
     spans = np.diff(times, prepend=0.0)
     longest = np.minimum(step, np.maximum(times / 16, 1e-300))
-    counts = np.ceil(spans / longest - 1e-9).astype(int)
+    if not np.all(spans > 0):
+        raise ValueError("output times must be positive and increase")
+    counts = np.maximum(np.ceil(spans / longest - 1e-9).astype(int), 1)
     # rounded, so that equal steps are the same number and share their coefficients
     return [(int(k), float(f"{span / k:.12g}")) for k, span in zip(counts, spans, strict=True)]

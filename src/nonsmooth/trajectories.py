@@ -2,6 +2,7 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from numbers import Integral
 
 import numpy as np
 import xarray as xr
@@ -18,6 +19,7 @@ from nonsmooth.times import equal_steps
 
 def parallel(work, jobs, threads=None):
     """Map `work` over `jobs` on `threads` threads (default: all cores); results in order."""
+    require_count("threads", threads or os.cpu_count())
     with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
         return list(pool.map(work, jobs))
 
@@ -33,6 +35,7 @@ def gram(
     scheme="strang",
     precision="float32",
     control=True,
+    parts=1,
 ):
     """Simulate a part of an ensemble and add up what its moments are made of.
 
@@ -52,6 +55,8 @@ def gram(
     scheme, precision : str
     control : bool
         Whether to run the control variate, where there is one.
+    parts : int
+        Into how many each step is divided.
 
     Returns
     -------
@@ -64,29 +69,57 @@ def gram(
     SceneError
         If a parameter is out of range or a path diverges.
     """
-    grid = equal_steps(times, step)
+
+    def products(delta, martingale, variation):
+        vector = np.ones((5, len(delta)))
+        with np.errstate(over="ignore", invalid="ignore"):  # refused afterwards
+            vector[1:] = delta, delta**2, martingale, martingale**2 - variation
+            return vector @ vector.T
+
+    grid = [(parts * steps, h / parts) for steps, h in equal_steps(times, step)]
+    return sum(
+        over_blocks(
+            scene, grid, paths, seed, products, first_path, threads, scheme, precision, control
+        )
+    )
+
+
+def over_blocks(scene, grid, paths, seed, reduce, first_path, threads, scheme, precision, control):
+    """March every block of paths over a grid of `equal_steps`.
+
+    Parameters
+    ----------
+    grid : list of (int, float)
+    reduce : callable
+        Takes D, M and <M> of a block's paths at an output time, returns an array to be kept.
+    scene, paths, seed, first_path, threads, scheme, precision, control
+        As for `gram`.
+
+    Returns
+    -------
+    list of numpy.ndarray
+        One per block, with the output time in front.
+    """
     slope = poisson_slope(scene) if control else None
-    coefficients = [schemes.coefficients(scene, scheme, h, precision, slope) for _, h in grid]
+    coefficients = {
+        h: schemes.coefficients(scene, scheme, h, precision, slope) for h in {h for _, h in grid}
+    }
 
     def run(job):
         block, count = job
         panel = new_panel(scene, seed, block, precision)
-        products = np.empty((len(grid), 5, 5))
-        vector = np.ones((5, count))
-        for k, ((steps, _), s) in enumerate(zip(grid, coefficients, strict=True)):
-            march(s, panel, count, steps, np.inf)
-            delta, martingale, variation = panel.total[:, :count]
-            with np.errstate(over="ignore", invalid="ignore"):  # refused below
-                vector[1:] = delta, delta**2, martingale, martingale**2 - variation
-                products[k] = vector @ vector.T
-        return products
+        kept = []
+        for steps, h in grid:
+            march(coefficients[h], panel, count, steps, np.inf)
+            kept.append(reduce(*panel.total[:, :count]))
+        return np.array(kept)
 
     results = parallel(run, blocks(first_path, paths), threads)
     require_finite(results)
-    return sum(results)
+    return results
 
 
-def paths_at(scene, times, step, paths, seed, scheme="strang"):
+def paths_at(scene, times, step, paths, seed, scheme="strang", threads=None):
     """Simulate paths in double precision and keep them at the output times.
 
     Returns
@@ -106,7 +139,7 @@ def paths_at(scene, times, step, paths, seed, scheme="strang"):
             kept.append(np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]]))
         return np.array(kept)
 
-    results = parallel(run, blocks(0, paths))
+    results = parallel(run, blocks(0, paths), threads)
     require_finite(results)
     return np.concatenate(results, axis=2)
 
@@ -135,8 +168,8 @@ def coupled(
 
     Returns
     -------
-    change : numpy.ndarray, shape (t, 3, 3)
-        Sums over the paths of the products of (1, D_h - D_h/2, D_h^2 - D_h/2^2).
+    change : numpy.ndarray, shape (t, 4, 4)
+        Sums over the paths of the products of (1, D_h - D_h/2, D_h^2 - D_h/2^2, D_h/2).
     passage : numpy.ndarray, shape (2, paths)
         First-passage times with step h/2 and h, inf if there is none.
     """
@@ -150,15 +183,15 @@ def coupled(
         block, count = job
         panel, other = (new_panel(scene, seed, block, precision) for _ in range(2))
         passage = np.full((2, count), np.inf)
-        products = np.empty((len(grid), 3, 3))
-        vector = np.ones((3, count))
+        products = np.empty((len(grid), 4, 4))
+        vector = np.ones((4, count))
         began = 0.0
         for k, ((steps, h), (fine, coarse)) in enumerate(zip(grid, pairs, strict=True)):
             given = schemes.on_given_increments(coarse)
             march_pair(fine, given, panel, other, count, steps, threshold, began, passage)
             began += steps * h
             half, whole = panel.total[TOTAL_DELTA, :count], other.total[TOTAL_DELTA, :count]
-            vector[1:] = whole - half, whole**2 - half**2
+            vector[1:] = whole - half, whole**2 - half**2, half
             products[k] = vector @ vector.T
         return products, passage
 
@@ -186,6 +219,11 @@ def moments(gram):
     covariance = gram / paths[:, None, None] - average[:, :, None] * average[:, None, :]
     result = {name: np.empty(len(gram)) for name in _MOMENTS}
     for k, (a, c, count) in enumerate(zip(average, covariance, paths, strict=True)):
+        if count < 2 or np.any(np.diag(c)[1:3] < _RESOLVED * gram[k].diagonal()[1:3] / count):
+            raise SceneError(
+                "the spread of int g is lost in its mean, or there is one path only; "
+                "subtract the mean from g or take more paths"
+            )
         plain = c[1, 1] * count / (count - 1)
         # to first order the sample variance is the mean of D^2 - 2 E[D] D
         for name, value, weights in (
@@ -199,17 +237,16 @@ def moments(gram):
     return result
 
 
+_RESOLVED = 1e-10  # a variance below this part of the mean square has no digits left
 _MOMENTS = ("mean", "mean_error", "variance", "variance_error")
 
 
-def step_bias(change, mean, order):
+def step_bias(change, order):
     """Bias of the variance of D by the step, from `coupled`, and its standard error.
 
     Parameters
     ----------
-    change : numpy.ndarray, shape (t, 3, 3)
-    mean : array_like, shape (t,)
-        E[D].
+    change : numpy.ndarray, shape (t, 4, 4)
     order : float
         Weak order q of the scheme: the bias is the change by halving over 1 - 2^-q.
 
@@ -220,7 +257,8 @@ def step_bias(change, mean, order):
     count = change[:, :1, 0]
     average = change[:, 0] / count
     covariance = change / count[..., None] - average[:, :, None] * average[:, None, :]
-    weights = np.stack([0 * mean, -2 * mean, 0 * mean + 1], axis=1)
+    mean = average[:, 3]
+    weights = np.stack([0 * mean, -2 * mean, 0 * mean + 1, 0 * mean], axis=1)
     factor = 1 / (1 - 2**-order)
     variance = np.einsum("ti,tij,tj->t", weights, covariance, weights)
     return factor * np.sum(weights * average, axis=1), factor * np.sqrt(variance / count[:, 0])
@@ -288,13 +326,13 @@ def simulate(
     require_positive("tol", tol)
     schemes.scheme(scene, scheme)  # refuses what it cannot simulate
     paths = int(np.ceil(32 / tol**2)) if paths is None else paths
-    require_positive("paths", paths)
+    require_count("paths", paths)
     if step is None:
         step = _choose_step(scene, times[-1:], tol / 4, seed, threads, scheme)
     require_positive("step", step)
     attributes = {"step": step, "paths": paths}
     if keep == "paths":
-        kept = paths_at(scene, times, step, paths, seed, scheme)
+        kept = paths_at(scene, times, step, paths, seed, scheme, threads)
         return xr.Dataset(
             {
                 name: (("path", "time"), kept[:, i].T)
@@ -325,13 +363,13 @@ def _bias(scene, times, step, paths, seed, threads, scheme):
     order = chosen.weak_order(scene)
     if chosen.coupled:
         change, _ = coupled(scene, times, step, paths, seed, threads, scheme=scheme)
-        return step_bias(change, np.zeros(len(times)), order)
-    # independent runs: what doubling the step changes is larger than what halving does
+        return step_bias(change, order)
+    # independent runs on a grid and on its halves
     coarse, fine = (
-        moments(gram(scene, times, h, 4 * paths, labelled(seed, k), 0, threads, scheme))
-        for k, h in (("coarse", 2 * step), ("fine", step))
+        moments(gram(scene, times, step, 4 * paths, labelled(seed, k), 0, threads, scheme, parts=k))
+        for k in (1, 2)
     )
-    factor = 1 / (2**order - 1)
+    factor = 1 / (1 - 2**-order)
     return (
         factor * (coarse["variance"] - fine["variance"]),
         factor * np.hypot(coarse["variance_error"], fine["variance_error"]),
@@ -368,9 +406,29 @@ def require_finite(results):
 def _output_times(horizon, times):
     require_positive("horizon", horizon)
     times = np.linspace(0, horizon, 201)[1:] if times is None else np.asarray(times, dtype=float)
-    if not (np.all(np.diff(times) > 0) and times[0] > 0 and times[-1] <= horizon):
-        raise SceneError("the output times must increase within (0, horizon]; sort them")
+    require_increasing("output times", times)
+    if times[-1] > horizon:
+        raise SceneError(
+            f"the last output time, {times[-1]:g}, is beyond horizon = {horizon:g}; choose another"
+        )
     return times
+
+
+def require_increasing(name, values):
+    """Refuse what is not a list of increasing positive finite numbers."""
+    values = np.asarray(values, dtype=float)
+    if values.ndim != 1 or not (
+        values.size and values[0] > 0 and np.all(np.diff(values) > 0) and np.isfinite(values[-1])
+    ):
+        raise SceneError(f"the {name} must be positive and increase; sort them")
+
+
+def require_count(name, value):
+    """Refuse what is not a whole positive number."""
+    if not (isinstance(value, Integral) and value > 0):
+        raise SceneError(
+            f"the simulation needs {name} > 0, a whole number, got {value!r}; choose one"
+        )
 
 
 def require_positive(name, value):

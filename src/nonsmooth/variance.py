@@ -1,11 +1,11 @@
-"""Variance of int_0^tau g and its growth rate gamma^2, deterministically."""
+"""Variance of int_0^tau g and its growth rate gamma^2."""
 
 import time
 
 import numpy as np
 import xarray as xr
 
-from nonsmooth import models, spectral
+from nonsmooth import models, schemes, spectral
 from nonsmooth.closed_form import friction_variance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
@@ -15,9 +15,11 @@ from nonsmooth.streams import labelled
 _DEGREES = (8, 12, 16, 20, 24)
 
 
-_EXACT, _SAMPLED = 1e-10, 1e-2  # tolerances unless given
-_SETTLED, _HORIZON = 10.0, 110.0  # times between which Monte Carlo takes the slope
-_STEP = 0.02
+_EXACT, _SAMPLED, _LEAST_SAMPLED = 1e-10, 1e-2, 1e-3  # tolerances: unless given, and the least
+_TIMES = (10.0, 60.0, 110.0)  # between which Monte Carlo takes the slope, unless it changes
+_DOUBLINGS = 7
+_PILOT_PATHS = 4096
+_STEP = 0.02  # times the smaller of 1 and 1/C_b
 
 
 def asymptotic_variance(scene, tol=None, seed=0, threads=None):
@@ -38,8 +40,8 @@ def asymptotic_variance(scene, tol=None, seed=0, threads=None):
     -------
     Estimate
         By closed form for dry friction and g = y, by spectral elements for the other scenes with
-        the state y and white noise, otherwise by Monte Carlo, whose error is the standard error
-        and the bias of the time step together.
+        the state y and white noise, otherwise by Monte Carlo, whose error is the bias of the
+        time step and the standard error together.
 
     Raises
     ------
@@ -48,8 +50,8 @@ def asymptotic_variance(scene, tol=None, seed=0, threads=None):
     """
     began = time.perf_counter()
     if not spectral.applies(scene):
-        return _by_monte_carlo(scene, tol or _SAMPLED, seed, threads, began)
-    tol = tol or _EXACT
+        return _by_monte_carlo(scene, _SAMPLED if tol is None else tol, seed, threads, began)
+    tol = _EXACT if tol is None else tol
     if (
         scene.mechanics.velocity_penalty != 0
         and scene.observable_expression == models.y
@@ -68,12 +70,14 @@ def asymptotic_variance(scene, tol=None, seed=0, threads=None):
     return Estimate(value, error, method, time.perf_counter() - began)
 
 
-def stationary_mean(scene):
+def stationary_mean(scene, seed=0, threads=None):
     """Stationary mean of g and its error: exact by symmetry or quadrature, else by Monte Carlo.
 
     Parameters
     ----------
     scene : Scene
+    seed, threads
+        Of Monte Carlo.
 
     Returns
     -------
@@ -83,25 +87,41 @@ def stationary_mean(scene):
         return 0.0, 0.0
     if spectral.applies(scene):
         return float(spectral.mean(scene)), 0.0
-    times = (_SETTLED, _HORIZON)
-    sample = growth(integrals(scene, times, _STEP, 10_000, (0, "mean")), times)
+    _, sample = _settled_growth(scene, 0.02, _PILOT_PATHS, labelled(seed, "mean"), threads)
     return sample.mean, sample.mean_error
 
 
+def _settled_growth(scene, step, paths, seed, threads):
+    """Lengthen the time until the slope of the variance no longer changes with it."""
+    times = _TIMES
+    for attempt in range(_DOUBLINGS):
+        own = labelled(seed, attempt)
+        sample = growth(integrals(scene, times, step, paths, own, threads=threads), times)
+        if sample.settled:
+            return times, sample
+        times = tuple(2 * t for t in times)
+    raise ToleranceError(
+        f"the growth rate of the variance has not settled by t = {times[-1] / 2:g}: "
+        f"{sample.rate:.3g}, still changing by {sample.settling:.1g}; "
+        "the scene mixes slowly, or int_0^t g has no such rate"
+    )
+
+
 def _by_monte_carlo(scene, tol, seed, threads, began):
-    if tol < 1e-4:
+    if not tol >= _LEAST_SAMPLED:
         raise ToleranceError(
             f"no deterministic solver for the state ({', '.join(scene.state)}) with "
-            f"{scene.noise.title}, and Monte Carlo cannot reach tol = {tol:g}; use tol >= 1e-4"
+            f"{scene.noise.title}, and Monte Carlo cannot reach tol = {tol:g}; "
+            f"use tol >= {_LEAST_SAMPLED:g}"
         )
-    times = tuple(t * max(1.0, 1 / scene.damping) for t in (_SETTLED, _HORIZON))
     paths = int(np.ceil(10 / tol**2))  # two standard errors are tol
-    step = _STEP * min(1.0, 1 / scene.damping)
-    for _ in range(4):
-        fewer = max(4096, paths // 16)
-        bias, spread = growth_bias(scene, times, step, fewer, labelled(seed, "halving"))
-        sample = growth(integrals(scene, times, step, paths, seed, threads=threads), times)
-        error = float(np.sqrt(sample.rate_error**2 + bias**2 + spread**2))
+    fewer = max(_PILOT_PATHS, paths // 16)
+    step = min(_STEP * min(1.0, 1 / scene.damping), schemes.scheme(scene).longest_step(scene) / 2)
+    for attempt in range(4):
+        own = labelled(seed, attempt)
+        times, sample = _settled_growth(scene, step, paths, own, threads)
+        bias, spread = growth_bias(scene, times, step, fewer, labelled(own, "halving"), threads)
+        error = abs(bias) + float(np.hypot(sample.rate_error, spread))
         if sample.rate < 5 * error:
             raise ToleranceError(
                 f"gamma^2 = {sample.rate:.1e} with an error of {error:.1e} may be 0, which it is "
@@ -112,8 +132,8 @@ def _by_monte_carlo(scene, tol, seed, threads, began):
             break
         if sample.rate_error > tol / 2 * sample.rate:
             paths *= 2
-        if np.hypot(bias, spread) > tol / 2 * sample.rate:
-            step /= 2
+        if abs(bias) + spread > tol / 2 * sample.rate:
+            step, fewer = step / 2, 2 * fewer
     _require(error <= tol * sample.rate, sample.rate, error, tol)
     return Estimate(sample.rate, error, "Monte Carlo", time.perf_counter() - began)
 

@@ -47,6 +47,7 @@ rule sweep_crossing:
         outputs=lookup(dpath="sweep/outputs", within=config),
         step=lookup(dpath="sweep/step", within=config),
         paths=lookup(dpath="sweep/paths", within=config),
+        halving_paths=lambda wildcards: sweep_halving(config["sweep"], wildcards.p),
         seed=lookup(dpath="seed", within=config),
         p=lambda wildcards: float(wildcards.p),
     message:

@@ -14,6 +14,7 @@ Gaussian step whose increments march_pair joins.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from types import ModuleType
 
 from nonsmooth.errors import SceneError
@@ -30,7 +31,7 @@ class Scheme:
     smooth_order, kink_order : float
         Weak order where the drift is smooth and across the kink of the friction law.
     longest_step : callable
-        Of a scene: the step up to which the scheme is stable, inf if at every step.
+        Of a scene: the step up to which the scheme is stable for every n, inf if at every step.
     handles : callable
         Whether the scheme can simulate a scene.
     coupled : bool
@@ -50,7 +51,7 @@ class Scheme:
 
 
 SCHEMES = {
-    "strang": Scheme(strang, 2.0, 1.5),
+    "strang": Scheme(strang, 2.0, 1.5, longest_step=strang.longest_step),
     "dry_friction": Scheme(dry_friction, 2.0, 2.0, handles=dry_friction.handles, coupled=False),
     "drift_implicit": Scheme(drift_implicit, 1.0, 1.0, handles=drift_implicit.handles),
     "euler_maruyama": Scheme(
@@ -79,8 +80,20 @@ def scheme(scene, name="strang"):
 
 
 def coefficients(scene, name, step, precision="float32", control=None):
-    """Return the coefficients of a step, with a control variate if there is a `PoissonSlope`."""
-    s = scheme(scene, name).module.coefficients(scene, step, precision)
+    """Return the coefficients of a step, with a control variate if there is a `PoissonSlope`.
+
+    Raises
+    ------
+    SceneError
+        If the scheme cannot simulate the scene, or not with such a step.
+    """
+    chosen = scheme(scene, name)
+    if not step < _longest_step(name, scene):
+        raise SceneError(
+            f"the scheme {name!r} is unstable with step = {step:g}; "
+            f"choose one below {_longest_step(name, scene):.2g}"
+        )
+    s = chosen.module.coefficients(scene, step, precision)
     if control is None or "control" not in s._fields:
         return s
     number = type(s.step)
@@ -90,6 +103,11 @@ def coefficients(scene, name, step, precision="float32", control=None):
         reach=number(control.reach),
         control=tuple(map(number, polynomial)),
     )
+
+
+@lru_cache(maxsize=256)
+def _longest_step(name, scene):
+    return SCHEMES[name].longest_step(scene)
 
 
 def on_given_increments(s):

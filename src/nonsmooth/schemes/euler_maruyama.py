@@ -61,7 +61,7 @@ def longest_step(scene):
     for place in (0.5 * knot, 2.0 * knot):
         at = dict.fromkeys(rows, sympy.Float(place))
         eigenvalues = np.linalg.eigvals(np.array(jacobian.subs(at).doit(), dtype=float))
-        decaying = eigenvalues[np.abs(eigenvalues) > 0]
+        decaying = eigenvalues[eigenvalues.real < 0]
         limits.append(np.min(-2 * decaying.real / np.abs(decaying) ** 2, initial=math.inf))
     return min(limits)
 

@@ -11,7 +11,8 @@ N   the noise: exact Gaussian step if its equation is linear, otherwise half a d
 
 Between two noise steps neighbouring half-flows are merged into Y(h/2) X(h) Y(h/2), or into
 Y(h) where the displacement is not needed. int g is gathered over the noise step, as the mean of
-g before and after it; the penalty force is gathered exactly, as what it takes from its flow.
+g before and after it; the penalty force is gathered as what it takes from its flow, exactly but
+for the damping within the flow of dry friction under colored noise.
 
 Weak order 2 where the drift is smooth, 1.5 across the kink of the friction law, stable for
 every n. Scenes that differ only in n consume the same increments: they are driven by the
@@ -28,8 +29,8 @@ import sympy
 
 from nonsmooth import flows, models
 from nonsmooth.control import DEGREE
-from nonsmooth.elementary import fma, like, maximum, minimum
-from nonsmooth.expressions import compiled, evaluate
+from nonsmooth.elementary import fma, larger, like, maximum, minimum
+from nonsmooth.expressions import compiled, evaluate, vectorised
 from nonsmooth.kernels import inlined
 from nonsmooth.panel import (
     BASE,
@@ -108,8 +109,7 @@ def coefficients(scene, step, precision="float32"):
     white = scene.noise.kind == "white"
     equations = {models.y: -scene.damping * models.y} if white else scene.noise.drift
     jacobian = sympy.Matrix(list(equations.values())).jacobian(list(equations))
-    at_rest = [f.subs(dict.fromkeys(equations, 0)) for f in equations.values()]
-    linear = not jacobian.free_symbols and not any(at_rest)
+    linear = _is_linear(equations)
     transition, factor = gaussian_step(
         np.array(jacobian, dtype=float) if linear else np.zeros((1, 1)), scene.noise.sigma, step
     )
@@ -144,6 +144,35 @@ def coefficients(scene, step, precision="float32"):
         reach=number(1.0),
         control=(number(0),) * (DEGREE + 1),
     )
+
+
+def longest_step(scene):
+    """Step up to which what is not exact is stable: the kicks of U and a nonlinear noise's flow.
+
+    h < 2 / sqrt(max U'') for the kicks, over the displacements that the walls or a few units of
+    the state allow, and h/2 < 2.8 / rate for the Runge-Kutta half-flow. The penalty sets none.
+    """
+    limit = math.inf
+    if "x" in scene.state:
+        reach = 5.0 if scene.model == "friction" else 1.5
+        stiffness = vectorised(sympy.diff(scene.potential_expression, models.x, 2), (models.x,))
+        with np.errstate(all="ignore"):
+            largest = np.nanmax(stiffness(np.linspace(-reach, reach, 401)))
+        limit = 2 / math.sqrt(largest) if largest > 0 else limit
+    drift = scene.noise.drift
+    if drift and not _is_linear(drift):
+        variables = tuple(drift)
+        jacobian = sympy.Matrix(list(drift.values())).jacobian(variables)
+        place = np.meshgrid(*[np.linspace(-3, 3, 25)] * len(variables))
+        entries = [vectorised(entry, variables)(*place) for entry in jacobian]
+        limit = min(limit, 5.6 / np.max(np.linalg.norm(entries, axis=0)))
+    return limit
+
+
+def _is_linear(equations):
+    jacobian = sympy.Matrix(list(equations.values())).jacobian(list(equations))
+    at_rest = [f.subs(dict.fromkeys(equations, 0)) for f in equations.values()]
+    return not jacobian.free_symbols and not any(at_rest)
 
 
 def _observable_code(scene):
@@ -216,7 +245,7 @@ def _shake_and_observe_velocity(s, data, normal, lanes):
         data[Y, i] = after
         delta = fma(half, before + after, data[DELTA, i])
         data[DELTA, i] = delta
-        data[PEAK, i] = maximum(data[PEAK, i], abs(data[BASE, i] + delta))
+        data[PEAK, i] = larger(data[PEAK, i], abs(data[BASE, i] + delta))
 
 
 @inlined

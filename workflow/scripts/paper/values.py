@@ -95,7 +95,7 @@ def values(
             "paths": f"{scenes['paths']:,}",
             "step": f"{scenes['step']:g}",
             "settled": f"{scenes['variance']['times'][0]:g}",
-            "end": f"{scenes['variance']['times'][1]:g}",
+            "end": f"{scenes['variance']['times'][-1]:g}",
             "horizon": f"{scenes['horizon']:g}",
             "n": ", ".join(
                 sorted({f"{entry['scene']['n']:g}" for entry in scenes["scenes"].values()})

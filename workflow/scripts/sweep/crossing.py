@@ -5,13 +5,15 @@ from functools import partial
 import numpy as np
 
 from nonsmooth import artifact
-from nonsmooth.crossing import crossing_estimate, first_passage_counts
+from nonsmooth.crossing import crossing_estimate, first_passage_bias, first_passage_counts
 from nonsmooth.jobs import produce
 from nonsmooth.scene import Scene
 
 
-def crossing(scene, threshold, horizon, outputs, p, step, paths, seed, threads):
+def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, seed, threads):
     """Count the paths that have crossed sqrt(p) b by p T, for equidistant T.
+
+    The bias of the time step is what halving it changes on the same noise.
 
     Returns
     -------
@@ -20,7 +22,17 @@ def crossing(scene, threshold, horizon, outputs, p, step, paths, seed, threads):
     horizons = horizon / outputs * np.arange(1, outputs + 1)
     scene = Scene(**scene)
     crossed = first_passage_counts(
-        scene, threshold, horizons, p, step, paths, (seed, f"p = {p}"), threads=threads
+        scene, threshold, horizons, p, step, paths, (seed, f"sweep, p = {p}"), threads=threads
+    )
+    bias, bias_error = first_passage_bias(
+        scene,
+        threshold,
+        horizons,
+        p,
+        step,
+        halving_paths,
+        (seed, f"sweep, halving, p = {p}"),
+        threads,
     )
     estimate = crossing_estimate(np.cumsum(crossed), paths)
     describe = {
@@ -33,7 +45,11 @@ def crossing(scene, threshold, horizon, outputs, p, step, paths, seed, threads):
         "Threshold crossing probability by Monte Carlo",
         f"{paths} paths of {scene}, b = {threshold}, p = {p}",
         {"horizon": ("horizon", horizons, "T"), "p": ((), p, "scale p")},
-        {name: ("horizon", estimate[name], text) for name, text in describe.items()},
+        {name: ("horizon", estimate[name], text) for name, text in describe.items()}
+        | {
+            "bias": ("horizon", bias, "bias of the probability by the time step"),
+            "bias_error": ("horizon", bias_error, "standard error of the bias"),
+        },
     )
 
 

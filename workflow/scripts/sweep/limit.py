@@ -42,9 +42,13 @@ def limit(variance, scenes, horizon, outputs):
                 f"the asymptotic formula needs E g = 0, but {name} has the mean "
                 f"{value['mean']:.3g}; subtract it from the scene's observable"
             )
-        if abs(value["bias"]) - ALLOWED * value["bias_error"] > 0.01 * value["gamma2"]:
+        if abs(value["settling"]) > ALLOWED * value["settling_error"]:
             raise CheckError(
-                f"the time step's bias of {name} is above 1 % of gamma^2; reduce sweep.step"
+                f"the growth rate of {name} has not settled; lengthen sweep.variance.times"
+            )
+        if abs(value["bias"]) > ALLOWED * (value["bias_error"] + value["gamma2_error"]):
+            raise CheckError(
+                f"the time step's bias of {name} is above the standard error; reduce sweep.step"
             )
         error = np.linalg.norm([value[k] for k in ("gamma2_error", "bias", "bias_error")])
         curves.append(

@@ -36,6 +36,8 @@ def sweep(variance, crossing, limit, scenes, p):
         for scale, run in zip(p, last, strict=True):
             row[f"W_{scale:g}"] = float(run["probability"])
             row[f"W_{scale:g}_error"] = float(run["probability_error"])
+            row[f"W_{scale:g}_bias"] = float(run["bias"])
+            row[f"W_{scale:g}_bias_error"] = float(run["bias_error"])
         row["W_star"] = float(star["probability"])
         row["W_star_error"] = float(star["probability_error"])
         plain.append(row)

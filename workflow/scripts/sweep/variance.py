@@ -16,19 +16,21 @@ def variance(scene, times, step, paths, halving_paths, seed, threads):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    found = growth(integrals(scene, times, step, paths, (seed, "growth"), threads=threads), times)
+    found = growth(integrals(scene, times, step, paths, (seed, "sweep"), threads=threads), times)
     bias, bias_error = growth_bias(
-        scene, times, step, halving_paths, (seed, "growth, halving"), threads
+        scene, times, step, halving_paths, (seed, "sweep, halving"), threads
     )
     return artifact.dataset(
         "Growth rate of the variance of the integrated observable by Monte Carlo",
-        f"{paths} paths of {scene}, from t = {times[0]:g} to {times[1]:g}",
+        f"{paths} paths of {scene}, from t = {times[0]:g} to {times[-1]:g}",
         {},
         {
             "gamma2": ((), found.rate, "growth rate of the variance of int_0^t g"),
             "gamma2_error": ((), found.rate_error, "standard error of the growth rate"),
             "bias": ((), bias, "bias of the growth rate by the time step"),
             "bias_error": ((), bias_error, "standard error of the bias"),
+            "settling": ((), found.settling, "growth rate of the second half less the first's"),
+            "settling_error": ((), found.settling_error, "standard error of the difference"),
             "mean": ((), found.mean, "stationary mean of g"),
             "mean_error": ((), found.mean_error, "standard error of the mean"),
         },
