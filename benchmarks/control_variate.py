@@ -12,7 +12,7 @@ import nonsmooth as ns
 from nonsmooth.growth import growth, integrals
 from nonsmooth.trajectories import gram, moments
 
-SCENE, STEP, PATHS, ROUNDS = ns.Scene("friction", n=100), 0.01, 65_536, 5
+SCENE, STEP, PATHS, ROUNDS = ns.Scene("friction", n=100), 0.01, 64_000, 5
 TAU = [0.1, 1.0, 10.0, 100.0]
 TIMES = (10.0, 60.0, 110.0)
 

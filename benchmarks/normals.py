@@ -11,7 +11,7 @@ import nonsmooth as ns
 from nonsmooth.streams import BLOCK, generator_words, normals
 
 SCENE = ns.Scene("friction")
-BLOCKS, ROUNDS, DRAWS = 8, 500, 125  # 8 * 1024 lanes, 500 * 125 * 2 numbers each
+BLOCKS, ROUNDS, DRAWS = 8, 500, 125  # 8000 lanes, 500 * 125 * 2 numbers each
 LEVELS = np.array([1, 2, 3, 4, 4.5, 5, 5.5])
 BINS = 4096
 

@@ -70,7 +70,7 @@ def test_the_smoke_configuration_only_overrides():
         ("crossing.threshold", -1, "'crossing.threshold' = -1: must be greater than 0"),
         ("crossing.p", [], "'crossing.p'"),
         ("crossing.paths", 1.5, "'crossing.paths' = 1.5: must be of type integer"),
-        ("crossing.shard", 7000, "'crossing.shard'"),
+        ("crossing.shard", 7500, "'crossing.shard'"),
         ("seed", "x", "'seed' = 'x': must be of type integer"),
         ("variance.scene.model", "fricton", "must be one of elasto_plastic, friction, obstacle"),
         ("variance.scene.potential", "x**2", "choose friction with potential '0'"),

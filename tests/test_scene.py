@@ -76,11 +76,12 @@ def test_what_the_theorems_do_not_cover_is_warned_about():
     """U that does not grow quadratically, where the displacement is part of the state."""
     for potential in ("0", "abs(x)", "cos(x)", "-x**2"):
         with pytest.warns(AssumptionWarning, match=r"violates \(HU2\)"):
-            ns.Scene("obstacle", potential=potential)
+            ns.Scene("friction", potential=potential, observable="x")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ns.Scene("friction")  # only the velocity matters
-        ns.Scene("obstacle", potential="x**2/2 + 0.3*cos(3*x)")
+        ns.Scene("obstacle")  # the walls confine
+        ns.Scene("friction", potential="x**2/2 + 0.3*cos(3*x)", observable="x")
         ns.Scene("elasto_plastic", potential="(x**2 - 4)**2/100")
 
 

@@ -15,6 +15,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.march import march
 from nonsmooth.panel import DELTA, ROWS, STATE, WIDTH, X, Y, new_panel
 from nonsmooth.schemes import SCHEMES, coefficients, scheme
+from nonsmooth.streams import BLOCK
 
 FALSE_ALARM = 1e-5
 HORIZON = 10.0
@@ -193,10 +194,10 @@ class TestStability:
         """N = 1e6 with h = 0.05: moments stay those of a confined oscillator."""
         scene = ns.Scene(model, noise, n=n, potential="x**2/2", observable="x")
         panel = new_panel(scene, 7, 0)
-        march(coefficients(scene, "strang", 0.05), panel, 1024, 1000, np.inf)
-        y, x = panel.data[list(STATE)[2:], :1024]
+        march(coefficients(scene, "strang", 0.05), panel, BLOCK, 1000, np.inf)
+        y, x = panel.data[list(STATE)[2:], :BLOCK]
         # the variance of y is at most that of the forced linear oscillator, below 2; six times
-        # its root covers 1024 samples
+        # its root covers the block's samples
         assert np.max(np.abs(y)) < 6 * np.sqrt(2)
         if model != "friction":
             assert np.max(np.abs(x)) <= 1 + (6 * np.sqrt(2) / 1e3 if np.isfinite(n) else 0)
@@ -215,8 +216,8 @@ class TestStability:
                     50.0  # so far that overshooting the dead zone does not save it
                 )
                 s = SCHEMES[name].module.coefficients(scene, h)
-                march(s, panel, 1024, 2000, np.inf)
-                bounded = np.max(np.abs(panel.data[list(STATE), :1024])) < 100
+                march(s, panel, BLOCK, 2000, np.inf)
+                bounded = np.max(np.abs(panel.data[list(STATE), :BLOCK])) < 100
                 assert bounded == stable
 
     @pytest.mark.parametrize("n", [100.0, 1e4, 1e6, np.inf])
@@ -226,8 +227,8 @@ class TestStability:
         s, squares = coefficients(scene, "strang", 0.1), []
         for block in range(40):
             panel = new_panel(scene, 4, block)
-            march(s, panel, 1024, 200, np.inf)
-            squares.append(panel.data[Y, :1024].astype(float) ** 2)
+            march(s, panel, BLOCK, 200, np.inf)
+            squares.append(panel.data[Y, :BLOCK].astype(float) ** 2)
         # inside a contact part of the energy is elastic: those lanes have |x| > 1
         mean, error = np.mean(squares), np.std(squares) / np.sqrt(np.size(squares))
         assert abs(mean - 0.5) < stats.norm.isf(FALSE_ALARM / 2) * error

@@ -18,7 +18,7 @@ FLUSH = 64  # steps between additions in double precision
 _CACHE_LINE = 64  # bytes
 # A row's width is an odd number of cache lines, so that equal places in two rows never share a
 # cache set.
-WIDTH = BLOCK + 16
+WIDTH = 1008
 
 # Rows of `data`: four normal numbers, the state, scratch, what the step adds to int g, and
 # since the last flush int g, its martingale part and that part's quadratic variation; int g at

@@ -106,12 +106,15 @@ class Scene:
         self._warn_if_not_confined()
 
     def _warn_if_not_confined(self):
-        """Warn if U grows less than quadratically (hyp:HU2b); reads the formula."""
+        """Warn if U_n grows less than quadratically (hyp:HU2b); reads the formula of U.
+
+        With obstacles the penalty is part of U_n and confines.
+        """
         ends = np.outer([-1, 1], noises.FAR)
         with np.errstate(all="ignore"):
             growth = vectorised(self.potential_expression, (x,))(ends) / ends**2
         confining = np.all(growth[:, -1] > 1e-3 * np.abs(growth[:, 0])) and np.all(growth > 0)
-        if "x" in self.state and not confining:
+        if "x" in self.state and not (confining or self.mechanics.in_potential):
             warnings.warn(
                 f"U = {self.potential!r} violates (HU2), U(x) >= c x**2 - C: the paper's theorems "
                 "do not cover this scene; add a confining term such as x**2/2",

@@ -20,7 +20,7 @@ from nonsmooth.elementary import fma, like
 from nonsmooth.errors import SceneError
 from nonsmooth.kernels import inlined
 
-BLOCK = 1024  # paths per stream; changing it changes every Monte Carlo result
+BLOCK = 1000  # paths per stream; changing it changes every Monte Carlo result
 _U = np.uint32
 
 

@@ -119,16 +119,16 @@ def test_a_named_target_does_its_own_work_only(repository, target, jobs):
     assert repository.jobs(target) == jobs
 
 
-def test_an_interrupted_run_is_resumed_to_the_same_bytes(finished):
+def test_an_interrupted_run_is_resumed_to_the_same_bytes(smoke_run):
     """A lost shard, and what was made of it, come back as they were."""
     lost = [
-        finished.folder / "results/smoke/variance" / name
+        smoke_run.folder / "results/smoke/variance" / name
         for name in ("shards/1.nc", "monte_carlo.nc")
     ]
     before = [path.read_bytes() for path in lost]
     for path in lost:
         path.unlink()
-    run = finished.snakemake("--cores", "1", "--", "results/smoke/variance/monte_carlo.nc")
+    run = smoke_run.snakemake("--cores", "1", "--", "results/smoke/variance/monte_carlo.nc")
     assert run.returncode == 0, run.stderr[-2000:]
     assert [path.read_bytes() for path in lost] == before
 
