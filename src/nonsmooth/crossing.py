@@ -21,6 +21,12 @@ from nonsmooth.trajectories import (
 )
 from nonsmooth.variance import asymptotic_variance, stationary_mean
 
+DESCRIPTIONS = {
+    "probability": "probability of crossing sqrt(p) b by p T",
+    "probability_error": "standard error of the probability",
+    "lower": "lower 95 % confidence limit (Jeffreys)",
+    "upper": "upper 95 % confidence limit (Jeffreys)",
+}
 _LONGEST_STEP = 0.1  # times the smaller of 1 and 1/C_b
 _PILOT_PATHS = 4096
 

@@ -115,18 +115,18 @@ rule figure_6:
         "../scripts/sweep/figure_6.py"
 
 
-rule table_5:
+rule table_6:
     input:
         variance=rules.sweep_limit.input.variance,
         crossing=rules.figure_6.input.crossing,
         limit=rules.figure_6.input.limit,
-        modules=sources("workflow/scripts/sweep/table_5.py"),
+        modules=sources("workflow/scripts/sweep/table_6.py"),
     output:
-        multiext(f"{RESULTS}/tables/table_5", ".csv", ".tex", ".typ"),
+        multiext(f"{RESULTS}/tables/table_6", ".csv", ".tex", ".typ"),
     log:
-        f"{RESULTS}/logs/tables/table_5.log",
+        f"{RESULTS}/logs/tables/table_6.log",
     benchmark:
-        f"{RESULTS}/benchmarks/tables/table_5.tsv"
+        f"{RESULTS}/benchmarks/tables/table_6.tsv"
     conda:
         "../envs/environment.yaml"
     threads: 1
@@ -134,6 +134,6 @@ rule table_5:
         scenes=lookup(dpath="sweep/scenes", within=config),
         p=lookup(dpath="sweep/p", within=config),
     message:
-        "Typeset table 5, every scene by Monte Carlo"
+        "Typeset table 6, every scene by Monte Carlo"
     script:
-        "../scripts/sweep/table_5.py"
+        "../scripts/sweep/table_6.py"

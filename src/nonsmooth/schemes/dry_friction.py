@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonsmooth import models
 from nonsmooth.elementary import fma, like, minimum, where
 from nonsmooth.kernels import inlined
 from nonsmooth.panel import GAIN, Y, observe
+from nonsmooth.schemes import drift_implicit
 
 
 class DryFriction(NamedTuple):
@@ -33,13 +33,7 @@ class DryFriction(NamedTuple):
 
 def handles(scene):
     """Only the velocity under dry friction at n = inf, with white noise and g = y."""
-    return (
-        math.isinf(scene.n)
-        and scene.state == ("y",)
-        and scene.noise.kind == "white"
-        and scene.mechanics.velocity_penalty != 0
-        and scene.observable_expression == models.y
-    )
+    return math.isinf(scene.n) and drift_implicit.handles(scene)
 
 
 @lru_cache(maxsize=1024)

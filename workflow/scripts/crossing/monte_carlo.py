@@ -3,7 +3,7 @@
 import numpy as np
 
 from nonsmooth import artifact
-from nonsmooth.crossing import crossing_estimate
+from nonsmooth.crossing import DESCRIPTIONS, crossing_estimate
 from nonsmooth.jobs import produce
 
 
@@ -28,17 +28,11 @@ def merge(shards, halving, p):
     paths = sum(int(shard["paths"]) for shard in shards)
     estimate = crossing_estimate(crossed, paths)
     slope = np.abs(horizon * np.gradient(estimate["probability"], horizon))
-    describe = {
-        "probability": "probability of crossing sqrt(p) b by p T",
-        "probability_error": "standard error of the probability",
-        "lower": "lower 95 % confidence limit (Jeffreys)",
-        "upper": "upper 95 % confidence limit (Jeffreys)",
-    }
     return artifact.dataset(
         "Threshold crossing probability by Monte Carlo",
         "all shards together; the first: " + shards[0].attrs["summary"],
         {"horizon": ("horizon", horizon, "T"), "p": ((), p, "scale p")},
-        {name: ("horizon", estimate[name], text) for name, text in describe.items()}
+        {name: ("horizon", estimate[name], text) for name, text in DESCRIPTIONS.items()}
         | {
             "bias": ((), -float(halving["shift"]) * slope.max(), "largest bias by the time step"),
             "bias_error": (

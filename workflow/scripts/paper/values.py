@@ -101,6 +101,7 @@ def values(
                 sorted({f"{entry['scene']['n']:g}" for entry in scenes["scenes"].values()})
             ),
             "allowed": f"{float(limit['allowed']):g}",
+            "standard_error": f"{0.5 / scenes['paths'] ** 0.5 + 5e-5:.4f}",
         },
         "trajectories": {
             "step": f"{trajectories['step']:g}",

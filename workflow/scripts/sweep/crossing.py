@@ -5,7 +5,12 @@ from functools import partial
 import numpy as np
 
 from nonsmooth import artifact
-from nonsmooth.crossing import crossing_estimate, first_passage_bias, first_passage_counts
+from nonsmooth.crossing import (
+    DESCRIPTIONS,
+    crossing_estimate,
+    first_passage_bias,
+    first_passage_counts,
+)
 from nonsmooth.jobs import produce
 from nonsmooth.scene import Scene
 
@@ -35,17 +40,11 @@ def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, 
         threads,
     )
     estimate = crossing_estimate(np.cumsum(crossed), paths)
-    describe = {
-        "probability": "probability of crossing sqrt(p) b by p T",
-        "probability_error": "standard error of the probability",
-        "lower": "lower 95 % confidence limit (Jeffreys)",
-        "upper": "upper 95 % confidence limit (Jeffreys)",
-    }
     return artifact.dataset(
         "Threshold crossing probability by Monte Carlo",
         f"{paths} paths of {scene}, b = {threshold}, p = {p}",
         {"horizon": ("horizon", horizons, "T"), "p": ((), p, "scale p")},
-        {name: ("horizon", estimate[name], text) for name, text in describe.items()}
+        {name: ("horizon", estimate[name], text) for name, text in DESCRIPTIONS.items()}
         | {
             "bias": ("horizon", bias, "bias of the probability by the time step"),
             "bias_error": ("horizon", bias_error, "standard error of the bias"),

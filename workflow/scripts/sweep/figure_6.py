@@ -16,7 +16,7 @@ def sweep(crossing, limit, scenes, p):
     Parameters
     ----------
     crossing, limit, scenes, p
-        As for table 5.
+        As for table 6.
 
     Returns
     -------

@@ -1,8 +1,7 @@
-"""Table 5: gamma^2 and crossing probabilities of every scene by Monte Carlo."""
+"""Table 6: gamma^2 and crossing probabilities of every scene by Monte Carlo."""
 
 import pandas as pd
 
-from nonsmooth.models import MODELS
 from nonsmooth.scene import Scene
 from nonsmooth.tables import scientific, typeset
 
@@ -43,17 +42,16 @@ def sweep(variance, crossing, limit, scenes, p):
         plain.append(row)
         cells.append(
             {
-                "model": MODELS[scene.model].title,
+                "model": scene.model.replace("_", "-"),
                 "noise": scene.noise.kind,
                 "state": ", ".join(f"${_symbol(s)}$" for s in scene.state),
                 "$g$": f"${_symbol(scene.observable)}$",
                 "$b$": f"${parameters['threshold']:g}$",
-                r"$\gamma^2$": rf"{gamma2['gamma2']:.4f}",
-                r"$\pm$": scientific(gamma2["gamma2_error"], bound=True),
-                "bias": scientific(gamma2["bias"]),
+                r"$\gamma^2$": rf"${gamma2['gamma2']:.4f} \pm {gamma2['gamma2_error']:.4f}$",
+                "bias": scientific(gamma2["bias"], digits=0),
             }
-            | {f"$p = {scale:g}$": f"{row[f'W_{scale:g}']:.4f}" for scale in p}
-            | {r"$W_\star$": f"{row['W_star']:.4f}"}
+            | {f"$p = {scale:g}$": f"{row[f'W_{scale:g}']:.3f}" for scale in p}
+            | {r"$W_\star$": f"{row['W_star']:.3f}"}
         )
     return pd.DataFrame(plain), pd.DataFrame(cells)
 
