@@ -12,8 +12,11 @@ from nonsmooth.panel import TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
+    PILOT_PATHS,
+    coarse_step,
     coupled,
     parallel,
+    refined_step,
     require_count,
     require_finite,
     require_increasing,
@@ -27,8 +30,6 @@ DESCRIPTIONS = {
     "lower": "lower 95 % confidence limit (Jeffreys)",
     "upper": "upper 95 % confidence limit (Jeffreys)",
 }
-_LONGEST_STEP = 0.1  # times the smaller of 1 and 1/C_b
-_PILOT_PATHS = 4096
 
 
 def first_passage_counts(
@@ -218,17 +219,15 @@ def crossing_probability(
     if method == "monte_carlo":
         paths = int(np.ceil(1 / tol**2)) if paths is None else paths
         require_count("paths", paths)
-        fewer = min(paths, max(_PILOT_PATHS, paths // 8))
+        fewer = min(paths, max(PILOT_PATHS, paths // 8))
         problem = (scene, threshold, horizons, p)
         if step is None:
-            chosen = schemes.scheme(scene)
-            step = _LONGEST_STEP * min(1.0, 1 / scene.damping)
-            step = min(step, chosen.longest_step(scene) / 4)
+            step = coarse_step(scene)
             bias, error = first_passage_bias(
                 *problem, step, fewer, labelled(seed, "pilot"), threads
             )
             worst = np.max(np.abs(bias) + error)
-            step = float(step * min(1.0, (tol / 2 / worst) ** (1 / chosen.weak_order(scene))))
+            step = refined_step(step, worst, tol / 2, schemes.scheme(scene).weak_order(scene))
         require_positive("step", step)
         crossed = first_passage_counts(
             *problem, step, paths, seed, threads=threads, precision=precision

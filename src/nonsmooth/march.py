@@ -92,7 +92,8 @@ def march(s, panel, lanes, steps, threshold):
             normal += s.normals
         if (k + 1) % FLUSH == 0 or k == steps:
             flush(data, total, lanes)
-            lanes = retire(words, data, total, lanes, threshold)
+            if threshold < np.inf:
+                lanes = retire(words, data, total, lanes, threshold)
     return lanes
 
 

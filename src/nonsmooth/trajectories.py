@@ -70,8 +70,9 @@ def gram(
         If a parameter is out of range or a path diverges.
     """
 
-    def products(delta, martingale, variation):
-        vector = np.ones((5, len(delta)))
+    def products(panel, count):
+        delta, martingale, variation = panel.total[:, :count]
+        vector = np.ones((5, count))
         with np.errstate(over="ignore", invalid="ignore"):  # refused afterwards
             vector[1:] = delta, delta**2, martingale, martingale**2 - variation
             return vector @ vector.T
@@ -91,7 +92,8 @@ def over_blocks(scene, grid, paths, seed, reduce, first_path, threads, scheme, p
     ----------
     grid : list of (int, float)
     reduce : callable
-        Takes D, M and <M> of a block's paths at an output time, returns an array to be kept.
+        Takes a block's panel at an output time and the number of its paths, returns an array to
+        be kept.
     scene, paths, seed, first_path, threads, scheme, precision, control
         As for `gram`.
 
@@ -111,7 +113,7 @@ def over_blocks(scene, grid, paths, seed, reduce, first_path, threads, scheme, p
         kept = []
         for steps, h in grid:
             march(coefficients[h], panel, count, steps, np.inf)
-            kept.append(reduce(*panel.total[:, :count]))
+            kept.append(reduce(panel, count))
         return np.array(kept)
 
     results = parallel(run, blocks(first_path, paths), threads)
@@ -128,20 +130,16 @@ def paths_at(scene, times, step, paths, seed, scheme="strang", threads=None):
         The scene's k state variables and D, time 0 included.
     """
     rows = [row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in scene.state]
+
+    def state(panel, count):
+        return np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]])
+
     grid = equal_steps(times, step)
-
-    def run(job):
-        block, count = job
-        panel = new_panel(scene, seed, block, "float64")
-        kept = [np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]])]
-        for steps, h in grid:
-            march(schemes.coefficients(scene, scheme, h, "float64"), panel, count, steps, np.inf)
-            kept.append(np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]]))
-        return np.array(kept)
-
-    results = parallel(run, blocks(0, paths), threads)
-    require_finite(results)
-    return np.concatenate(results, axis=2)
+    kept = over_blocks(scene, grid, paths, seed, state, 0, threads, scheme, "float64", False)
+    start = state(new_panel(scene, seed, 0, "float64"), 1)
+    return np.concatenate(
+        [np.broadcast_to(start, (1, len(start), paths)), np.concatenate(kept, axis=2)]
+    )
 
 
 def coupled(
@@ -342,7 +340,7 @@ def simulate(
             attrs=attributes,
         )
     found = moments(gram(scene, times, step, paths, seed, 0, threads, scheme, precision=precision))
-    fewer = min(paths, max(_PILOT_PATHS, paths // 8))
+    fewer = min(paths, max(PILOT_PATHS, paths // 8))
     found["variance_bias"], found["variance_bias_error"] = _bias(
         scene, times, step, fewer, labelled(seed, "halving"), threads, scheme
     )
@@ -353,8 +351,19 @@ def simulate(
     )
 
 
-_LONGEST_STEP = 0.1  # in units of the fastest smooth time scale, 1/C_b or 1
-_PILOT_PATHS = 4096
+_LONGEST_STEP = 0.1  # times the smaller of 1 and 1/C_b
+PILOT_PATHS = 4096
+
+
+def coarse_step(scene, scheme="strang"):
+    """Step from which the search for one with a given bias starts."""
+    longest = schemes.scheme(scene, scheme).longest_step(scene)
+    return min(_LONGEST_STEP * min(1.0, 1 / scene.damping), longest / 4)
+
+
+def refined_step(step, bias, allowed, order):
+    """Step at which a bias known at a coarser one is as small as allowed, by the weak order."""
+    return float(step * min(1.0, (allowed / bias) ** (1 / order)))
 
 
 def _bias(scene, times, step, paths, seed, threads, scheme):
@@ -378,15 +387,13 @@ def _bias(scene, times, step, paths, seed, threads, scheme):
 
 def _choose_step(scene, times, tol, seed, threads, scheme):
     """Find the step whose relative bias of the variance is below `tol`, from a coarse pilot."""
-    chosen = schemes.scheme(scene, scheme)
-    step = _LONGEST_STEP * min(1.0, 1 / scene.damping)
-    step = min(step, chosen.longest_step(scene) / 4, float(times[-1]) / 32)
+    step = min(coarse_step(scene, scheme), float(times[-1]) / 32)
     found = moments(
-        gram(scene, times, step, _PILOT_PATHS, labelled(seed, "pilot"), 0, threads, scheme)
+        gram(scene, times, step, PILOT_PATHS, labelled(seed, "pilot"), 0, threads, scheme)
     )
-    bias, error = _bias(scene, times, step, _PILOT_PATHS, labelled(seed, "pilot"), threads, scheme)
+    bias, error = _bias(scene, times, step, PILOT_PATHS, labelled(seed, "pilot"), threads, scheme)
     worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
-    return float(step * min(1.0, (tol / worst) ** (1 / chosen.weak_order(scene))))
+    return refined_step(step, worst, tol, schemes.scheme(scene, scheme).weak_order(scene))
 
 
 def require_finite(results):

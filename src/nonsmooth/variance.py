@@ -11,14 +11,12 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.growth import growth, growth_bias, integrals
 from nonsmooth.streams import labelled
+from nonsmooth.trajectories import PILOT_PATHS
 
 _DEGREES = (8, 12, 16, 20, 24)
-
-
 _EXACT, _SAMPLED, _LEAST_SAMPLED = 1e-10, 1e-2, 1e-3  # tolerances: unless given, and the least
 _TIMES = (10.0, 60.0, 110.0)  # between which Monte Carlo takes the slope, unless it changes
 _DOUBLINGS = 7
-_PILOT_PATHS = 4096
 _STEP = 0.02  # times the smaller of 1 and 1/C_b
 
 
@@ -87,8 +85,14 @@ def stationary_mean(scene, seed=0, threads=None):
         return 0.0, 0.0
     if spectral.applies(scene):
         return float(spectral.mean(scene)), 0.0
-    _, sample = _settled_growth(scene, 0.02, _PILOT_PATHS, labelled(seed, "mean"), threads)
+    _, sample = _settled_growth(
+        scene, _first_step(scene), PILOT_PATHS, labelled(seed, "mean"), threads
+    )
     return sample.mean, sample.mean_error
+
+
+def _first_step(scene):
+    return min(_STEP * min(1.0, 1 / scene.damping), schemes.scheme(scene).longest_step(scene) / 2)
 
 
 def _settled_growth(scene, step, paths, seed, threads):
@@ -115,8 +119,8 @@ def _by_monte_carlo(scene, tol, seed, threads, began):
             f"use tol >= {_LEAST_SAMPLED:g}"
         )
     paths = int(np.ceil(10 / tol**2))  # two standard errors are tol
-    fewer = max(_PILOT_PATHS, paths // 16)
-    step = min(_STEP * min(1.0, 1 / scene.damping), schemes.scheme(scene).longest_step(scene) / 2)
+    fewer = max(PILOT_PATHS, paths // 16)
+    step = _first_step(scene)
     for attempt in range(4):
         own = labelled(seed, attempt)
         times, sample = _settled_growth(scene, step, paths, own, threads)

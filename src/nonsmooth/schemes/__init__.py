@@ -6,9 +6,8 @@ returns) and two kernels over the lanes of a panel. N steps are
     flow  kick  flow  kick  flow ... kick  flow
 
 with N kicks, so that a splitting can merge what neighbouring steps share; `flow` is told whether
-it is the first or the last. Every NamedTuple has
-`step`; `normals`, how many normal numbers a step takes; and `transition` and `factor`, the
-Gaussian step whose increments march_pair joins.
+it is the first or the last. Every NamedTuple has `step`; `normals`, how many normal numbers a step
+takes; and `transition` and `factor`, the Gaussian step whose increments march_pair joins.
 """
 
 import math
