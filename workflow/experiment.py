@@ -1,13 +1,15 @@
 """What the rules need to know of the configuration."""
 
 import os
+import warnings
 from math import ceil, isfinite, isnan
 from pathlib import Path
 
 import yaml
 
 from nonsmooth.configuration import validate
-from nonsmooth.errors import ConfigError, SceneError
+from nonsmooth.errors import AssumptionWarning, ConfigError, SceneError
+from nonsmooth.noises import Langevin
 from nonsmooth.scene import Scene
 
 SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"
@@ -45,6 +47,7 @@ def check(config):
         raise ConfigError(f"config: 'sweep.variance.times' = {times} must increase; sort them")
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
+    _check_theorems(config["theorems"])
     for model, parameters in config["trajectories"]["models"].items():
         Scene(model, potential=parameters["potential"], damping=parameters["damping"])
     for key, path in config["outputs"].items():
@@ -56,6 +59,18 @@ def check(config):
                 f"config: outputs.{key} = {path!r}: cannot write into {str(folder)!r}; "
                 "make it writable or choose another folder"
             )
+
+
+def _check_theorems(theorems):
+    """Read every formula; n and C_b of the first will do."""
+    for v in theorems["langevin"]:
+        Langevin(v)
+    with warnings.catch_warnings():
+        # U = 0 is meant where the velocity alone is covered
+        warnings.simplefilter("ignore", AssumptionWarning)
+        for model, potentials in theorems["potentials"].items():
+            for U in potentials:
+                Scene(model, potential=U)
 
 
 def _numbers(value, path=""):

@@ -1,0 +1,421 @@
+"""The paper's Lyapunov functions V_n and their drift A_n V_n + epsilon V_n (Lemma lemma1).
+
+Everything is an expression in the undefined functions of `nonsmooth.generic`, so that the terms
+delta y U'(x) of opposite sign cancel in algebra and not in floating point; a scene's own
+functions enter as numbers. Where the displacement is not confined, U = 0, (HU2) does not hold and
+the paper's V_n is no Lyapunov function; the velocity alone has delta y^2/2 + C_V, for which all
+formulas hold with 1/lambda_3 = Gamma = 0.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import sympy
+
+from nonsmooth import assumptions, generic
+from nonsmooth.errors import SceneError
+from nonsmooth.expressions import vectorised
+from nonsmooth.models import STATE_VARIABLES, eta, x, y, zeta
+from nonsmooth.models import damping as C_b
+from nonsmooth.noises import NOISES
+from nonsmooth.penalties import n as penalization
+
+delta, epsilon, C_V, xi, K, M = sympy.symbols("delta epsilon C_V xi K M", positive=True)
+R = sympy.Function("R")
+
+_SLACK = 1.01  # the inequalities (LB-delta) are strict
+
+
+@dataclass(frozen=True)
+class Constants:
+    """Constants that satisfy (LB-delta) and (def-epsilon-CV), claim S_4 mended.
+
+    Attributes
+    ----------
+    delta, epsilon, C_V : float
+    noise_weight : float
+        xi or K, the factor of the noise's own Lyapunov function; 0 for white noise.
+    restoring : float
+        r or delta~; inf for white noise.
+    confinement : Confinement or None
+        None if the displacement is not part of the state.
+    dissipation : Dissipation or None
+    """
+
+    delta: float
+    epsilon: float
+    C_V: float
+    noise_weight: float
+    restoring: float
+    confinement: assumptions.Confinement | None
+    dissipation: assumptions.Dissipation | None
+
+
+def function(kind, confined=True):
+    """Return V_{n,d} of eq. (Lyapunov-functions), an expression.
+
+    Parameters
+    ----------
+    kind : {"white", "langevin", "hamiltonian"}
+    confined : bool
+        False for the velocity alone.
+    """
+    mechanical = delta * y**2 / 2 + C_V
+    if confined:
+        mechanical += delta * generic.U(x) + x * y
+    own = {
+        "white": sympy.Integer(0),
+        "langevin": xi * eta**2 / 2,
+        "hamiltonian": K * (generic.H(eta, zeta) + R(eta, zeta) + M),
+    }
+    return own[kind] + mechanical
+
+
+def generator(psi, kind):
+    """Return A_n psi of eq. (inf-gen), with the drift of Table 2."""
+    noise = NOISES[kind]
+    transport = sum(f * sympy.diff(psi, s) for s, f in generic.drift(noise).items())
+    return sympy.diff(psi, noise.driven, 2) / 2 + transport
+
+
+def drift(kind, confined=True):
+    """Return A_n V_n + epsilon V_n, expanded; the left-hand side of (HV2)."""
+    V = function(kind, confined)
+    total = generator(V, kind) + epsilon * V
+    if not confined:
+        total = total.subs(generic.U(x), 0).doit()
+    return sympy.expand(total)
+
+
+@lru_cache(maxsize=256)
+def constants(scene):
+    """Choose the constants as the paper's proof does, within one per cent of their bounds.
+
+    epsilon is half of its bound. For the Hamiltonian noise it must be below delta~ too, and the
+    bound of K has delta~ (delta~ - epsilon) in the place of delta~^2, as claim S_4 asks for.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n and noise of unit intensity.
+
+    Returns
+    -------
+    Constants
+
+    Raises
+    ------
+    SceneError
+        If the scene is outside the paper's assumptions.
+    """
+    if math.isinf(scene.n):
+        raise SceneError("the paper's Lyapunov functions are for finite n; choose one")
+    if scene.noise.sigma != 1:
+        raise SceneError("the paper's Lyapunov functions are for sigma = 1; choose it")
+    free = scene.mechanics.added_potential == 0 and scene.potential_expression.is_number
+    trap = None if free else assumptions.confinement(scene)
+    inverse = 0.0 if free else 1 / trap.lambda_3
+    b = scene.damping
+    bounds = [2 / b * (2 + 4 * (b + scene.n) ** 2 * inverse / 3)]
+    if trap:
+        bounds.append(1 / math.sqrt(trap.lambda_1))
+    big = _SLACK * max(bounds)
+    # K_2 of (An2V2epsV2-bound) has C_V for epsilon C_V, which needs epsilon <= 1
+    limits = [b, 1.0] + ([trap.lambda_3 / big] if trap else [])
+    restoring, form = math.inf, None
+    if scene.noise.kind == "langevin":
+        restoring = assumptions.restoring_rate(scene.noise)
+    elif scene.noise.kind == "hamiltonian":
+        form = assumptions.dissipation(scene.noise)
+        restoring = form.rate
+    small = min(*limits, restoring) / 2
+    need = big / b + 2 * inverse / 3
+    weight = {
+        "white": 0.0,
+        "langevin": 8 * need / restoring,
+        "hamiltonian": 4 * need / (restoring * (restoring - small)),
+    }
+    return Constants(
+        delta=big,
+        epsilon=small,
+        C_V=1 + big * trap.beta_1 if trap else 1.0,
+        noise_weight=_SLACK * weight[scene.noise.kind],
+        restoring=restoring,
+        confinement=trap,
+        dissipation=form,
+    )
+
+
+def drift_expression(scene):
+    """Return A_n V_n + epsilon V_n of a scene, an expression in its state."""
+    c = constants(scene)
+    U, _ = assumptions.potential(scene)
+    own = {generic.U(x): U + (c.confinement.shift if c.confinement else 0)}
+    if c.dissipation:
+        own[R(eta, zeta)] = c.dissipation.cross * eta * zeta
+    expression = drift(scene.noise.kind, c.confinement is not None).subs(own).doit()
+    numbers = {s: value for s, value in _numbers(scene).items() if isinstance(s, sympy.Symbol)}
+    return generic.specialise(expression, scene).subs(numbers)
+
+
+def _numbers(scene):
+    c = constants(scene)
+    return {
+        delta: c.delta,
+        epsilon: c.epsilon,
+        C_V: c.C_V,
+        xi: c.noise_weight,
+        K: c.noise_weight,
+        M: c.dissipation.M if c.dissipation else 0.0,
+        C_b: scene.damping,
+    }
+
+
+# what stands for the undefined functions when the drift is evaluated
+_U, _slope, _fx, _fy, _slope_v = sympy.symbols("U Uprime f_x f_y vprime", real=True)
+_k, _gamma, _cross = sympy.symbols("k gamma_0 cross", real=True)
+_PLACES = (_U, _slope, _fx, _fy, _slope_v, _k, _gamma, _cross)
+_PARAMETERS = (delta, epsilon, C_V, xi, K, M, C_b)
+
+
+@lru_cache(maxsize=16)
+def _compiled(kind, confined, what):
+    """Compile V_n or its drift to a function that returns its terms one by one."""
+    expression = {"drift": drift, "value": function}[what](kind, confined)
+    expression = expression.subs(
+        {
+            generic.H(eta, zeta): _k * eta**2 / 2 + zeta**2 / 2,
+            generic.F(eta, zeta): _gamma,
+            R(eta, zeta): _cross * eta * zeta,
+        }
+    ).doit()
+    expression = expression.subs(
+        {
+            sympy.Derivative(generic.U(x), x): _slope,
+            sympy.Derivative(generic.v(eta), eta): _slope_v,
+            generic.f_x(x): _fx,
+            generic.f_y(y): _fy,
+        }
+    ).subs(generic.U(x), _U)
+    terms = sympy.Add.make_args(sympy.expand(expression))
+    return sympy.lambdify((*STATE_VARIABLES, *_PLACES, *_PARAMETERS), terms, modules="numpy")
+
+
+def evaluate(scene, z, what="drift"):
+    """Evaluate V_n or A_n V_n + epsilon V_n term by term.
+
+    Parameters
+    ----------
+    scene : Scene
+    z : dict
+        Symbol -> array; the variables of the state.
+    what : {"drift", "value"}
+
+    Returns
+    -------
+    total, magnitude : numpy.ndarray
+        The sum of the terms and of their absolute values: a few eps times the latter bounds the
+        rounding error of the former.
+    """
+    functions, tail, confined = _functions(scene)
+    state = [z.get(s, np.zeros(1)) for s in STATE_VARIABLES]
+    places = [of(z.get(s, np.zeros(1))) for of, s in functions]
+    return _summed(_compiled(scene.noise.kind, confined, what)(*state, *places, *tail))
+
+
+@lru_cache(maxsize=64)
+def _functions(scene):
+    """Return a scene's U, U', f_x, f_y, v' with their arguments, and all its numbers."""
+    c, model, noise = constants(scene), scene.mechanics, scene.noise
+    U, slope = assumptions.potential(scene)
+    if c.confinement:
+        U += c.confinement.shift
+    v = noise.potential_expression if noise.kind == "langevin" else sympy.Integer(0)
+    own = (
+        (U, x),
+        (slope, x),
+        (model.displacement_penalty, x),
+        (model.velocity_penalty, y),
+        (sympy.diff(v, eta), eta),
+    )
+    number = {penalization: sympy.Float(scene.n)}
+    functions = [(vectorised(f.subs(number), (s,)), s) for f, s in own]
+    form, numbers = c.dissipation, _numbers(scene)
+    quadratic = (form.stiffness, form.damping, form.cross) if form else (0.0, 0.0, 0.0)
+    return functions, (*quadratic, *(numbers[s] for s in _PARAMETERS)), c.confinement is not None
+
+
+def _summed(terms):
+    total = magnitude = 0.0
+    for term in terms:
+        total, magnitude = total + term, magnitude + np.abs(term)
+    return total, magnitude
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A boxed bound: constant - sum_i quadratic_i z_i^2 + sum_i linear_i |z_i|.
+
+    Attributes
+    ----------
+    constant : float
+        K_d.
+    quadratic, linear : dict
+        Symbol -> coefficient.
+    """
+
+    constant: float
+    quadratic: dict
+    linear: dict
+
+    @property
+    def supremum(self):
+        """The constant C of (HV2) that follows from it."""
+        return self.constant + sum(
+            slope**2 / (4 * self.quadratic[s]) for s, slope in self.linear.items()
+        )
+
+    def evaluate(self, z):
+        """Return the bound and the sum of the absolute values of its terms, as `evaluate`."""
+        terms = [self.constant]
+        terms += [-coefficient * z[s] ** 2 for s, coefficient in self.quadratic.items()]
+        terms += [coefficient * np.abs(z[s]) for s, coefficient in self.linear.items()]
+        return _summed(terms)
+
+
+def bound(scene):
+    """Eqs. (An2V2epsV2-bound), (An3V3epsV3-bound); (An4V4epsV4-bound) with claim S_4 mended.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Bound
+    """
+    c, trap = constants(scene), constants(scene).confinement
+    constant, quadratic, linear = c.C_V, {y: scene.damping * c.delta / 4}, {y: c.delta}
+    if trap:
+        constant += trap.beta_3 + (c.delta * trap.beta_4 * scene.n) ** 2 / trap.lambda_3
+        quadratic[x], linear[x] = 3 * trap.lambda_3 / 8, 1.0
+    if scene.noise.kind == "white":
+        return Bound(constant + c.delta / 2, quadratic, linear)
+    own = noise_bound(scene)
+    quadratic = {s: coefficient / 2 for s, coefficient in quadratic.items()}
+    # the forcing eta (delta y + x) costs half of what the noise's own bound has in eta
+    quadratic |= {s: c / 2 if s == eta else c for s, c in own.quadratic.items()}
+    return Bound(constant + own.constant, quadratic, linear)
+
+
+def noise_bound(scene, printed=False):
+    """Eqs. (lyapu-bound-S3), (lyapu-bound-S4); the latter mended unless `printed`.
+
+    (T120) gives L Gamma_2 + epsilon Gamma_2 <= K M (1 + delta~) - (delta~ - epsilon) Gamma_2,
+    and (T117) Gamma_2 >= K delta~ (eta^2 + zeta^2).
+
+    Parameters
+    ----------
+    scene : Scene
+        With colored noise.
+    printed : bool
+
+    Returns
+    -------
+    Bound
+    """
+    c = constants(scene)
+    weight, rate = c.noise_weight, c.restoring
+    if scene.noise.kind == "langevin":
+        return Bound(weight / 2, {eta: weight * rate / 2}, {})
+    M = c.dissipation.M
+    constant, slope = weight * M * (1 + rate), weight * rate * (rate - c.epsilon)
+    if printed:
+        constant, slope = M * (1 + weight * rate), weight * rate**2
+    return Bound(constant, {eta: slope, zeta: slope}, {})
+
+
+def mechanical_claims(scene, z):
+    """S_1(x) and S_2(y, x) at the points z, and the claims' bounds of them.
+
+    Eqs. (lyapu-bound-S1) and (lyapu-bound-S2); the latter is Gamma~ x^2/2 + ..., which grows, so
+    that its coefficients count negative here.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a confined displacement.
+    z : dict
+        Symbol -> array.
+
+    Returns
+    -------
+    list of (value, bound)
+        Each a pair (sum of terms, sum of their absolute values).
+    """
+    c, b = constants(scene), scene.damping
+    trap, functions = c.confinement, _functions(scene)[0]
+    U, slope, f_x, f_y, _ = (of(z[s]) if s in z else 0.0 for of, s in functions)
+    flat = 3 * trap.lambda_3 / 4
+    first = _summed([c.delta * c.epsilon * U, -slope * z[x], -c.delta * slope * f_x])
+    second = _summed(
+        [-z[y] * z[x] * (b - c.epsilon), -z[y] * f_x, -f_y * c.delta * z[y], -f_y * z[x]]
+    )
+    Gamma = trap.beta_3 + (c.delta * trap.beta_4 * scene.n) ** 2 / trap.lambda_3
+    bounds = (
+        Bound(Gamma, {x: flat}, {}),
+        Bound(0.0, {y: -((b + scene.n) ** 2) / (2 * flat), x: -flat / 2}, {y: c.delta, x: 1.0}),
+    )
+    return [
+        (value, bound.evaluate(z)) for value, bound in zip((first, second), bounds, strict=True)
+    ]
+
+
+def noise_drift(scene, z):
+    """S_3(eta) or S_4(zeta, eta) at the points z, and the sum of their terms' absolute values."""
+    c = constants(scene)
+    weight, small = c.noise_weight, c.epsilon
+    if scene.noise.kind == "langevin":
+        slope = vectorised(sympy.diff(scene.noise.potential_expression, eta), (eta,))(z[eta])
+        return _summed([weight / 2, -weight * slope * z[eta], small * weight * z[eta] ** 2 / 2])
+    form = c.dissipation
+    energy = small * form.energy - form.decay
+    return _summed(
+        [
+            weight * (0.5 + small * form.M),
+            weight * energy[0, 0] * z[eta] ** 2,
+            weight * 2 * energy[0, 1] * z[eta] * z[zeta],
+            weight * energy[1, 1] * z[zeta] ** 2,
+        ]
+    )
+
+
+def lower_bound(scene):
+    """Return the first step of (HV1) as a bound of -V_n.
+
+    V_{n,2} >= y^2/2 (delta - 1/(delta lambda_1)) + delta lambda_1 x^2/2 + 1, and (T117).
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Bound
+        Of -V_n; all its quadratic coefficients are positive.
+    """
+    c, trap = constants(scene), constants(scene).confinement
+    if trap:
+        quadratic = {
+            y: (c.delta - 1 / (c.delta * trap.lambda_1)) / 2,
+            x: c.delta * trap.lambda_1 / 2,
+        }
+    else:
+        quadratic = {y: c.delta / 2}
+    if scene.noise.kind == "langevin":
+        quadratic[eta] = c.noise_weight / 2
+    elif scene.noise.kind == "hamiltonian":
+        quadratic |= dict.fromkeys((eta, zeta), c.noise_weight * c.restoring)
+    return Bound(-1.0, quadratic, {})

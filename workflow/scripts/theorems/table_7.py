@@ -1,0 +1,61 @@
+"""Table 7: the smallest margins of the drift condition for every kind of scene."""
+
+import pandas as pd
+from sympy import latex
+
+from nonsmooth.expressions import parse
+from nonsmooth.models import eta
+from nonsmooth.tables import scientific, typeset
+
+COLUMNS = {
+    "drift": r"$1 - \sup / C$",
+    "boxed": "boxed bound",
+    "mechanical": "$S_1$, $S_2$",
+    "forcing": "$S_3$, $S_4$",
+    "forcing_printed": "$S_4$ printed",
+    "lower": "(HV1)",
+}
+
+
+def smallest(drift_condition):
+    """Tabulate, for every model and noise, the minimum over potentials, damping and n.
+
+    Returns
+    -------
+    plain, cells : pandas.DataFrame
+    """
+    table = drift_condition.to_dataframe().reset_index(drop=True)
+    kinds = table.groupby(["model", "noise", "v"], sort=False)
+    plain = kinds[[*COLUMNS, "coefficient"]].min()
+    plain.insert(0, "scenes", kinds.size())
+    plain["rounding"] = kinds["drift_error"].max()
+    plain = plain.reset_index()
+    cells = []
+    for row in plain.itertuples():
+        has = {"forcing": row.noise != "white", "forcing_printed": row.noise == "hamiltonian"}
+        shown = {
+            label: _margin(getattr(row, name), row.rounding) if has.get(name, True) else "--"
+            for name, label in COLUMNS.items()
+        }
+        v = ", $v = " + latex(parse(row.v, (eta,))) + "$" if row.v else ""
+        cells.append(
+            {
+                "model": row.model.replace("_", "-"),
+                "noise": row.noise + v,
+                "scenes": str(row.scenes),
+            }
+            | shown
+            | {"$c$": f"${row.coefficient:.3g}$"}
+        )
+    return plain, pd.DataFrame(cells)
+
+
+def _margin(value, rounding):
+    """Spell a margin; an inequality that is attained has none but for rounding."""
+    if abs(value) <= rounding:
+        return "$0$"
+    return f"${value:.3f}$" if abs(value) >= 0.01 else scientific(value)
+
+
+if __name__ == "__main__":
+    typeset(smallest, snakemake)
