@@ -49,7 +49,7 @@ class Margins:
 
 
 def variables(scene):
-    """Return the variables of V_n: all of the paper's state, without x where that is not confined."""
+    """Return the variables of V_n: all of the state, without x where that is not confined."""
     confined = lyapunov.constants(scene).confinement is not None
     return tuple(s for s in scene.variables if s != x or confined)
 

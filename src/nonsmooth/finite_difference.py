@@ -14,12 +14,12 @@ from nonsmooth.expressions import vectorised
 
 
 def moments(scene, times, half_width, nodes, time_step):
-    """Solve eqs. (PDEw) and (PDEv) and return w(0, tau) and v(0, tau).
+    """Solve eqs. (PDEw) and (PDEv) and return w and v at the starting point.
 
     Parameters
     ----------
     scene : Scene
-        With state y and a finite n.
+        With state y, a finite n, and a starting point among the nodes.
     times : array_like, shape (t,)
         Output times, multiples of `time_step`.
     half_width : float
@@ -38,23 +38,17 @@ def moments(scene, times, half_width, nodes, time_step):
     SceneError
         If the scene has another state, or the grid does not fit.
     """
-    if scene.state != ("y",) or scene.start.get("y", 0.0) != 0.0:
-        raise SceneError("the paper's scheme is one-dimensional; it takes the state (y) from y = 0")
-    if nodes % 2 == 0:
-        raise SceneError(f"the paper's scheme needs an odd number of nodes, got {nodes}; add one")
+    y, lower, main, upper, source = system(scene, half_width, nodes, time_step)
+    start = scene.start.get("y", 0.0)
+    node = int(np.argmin(np.abs(y - start)))
+    width = y[1] - y[0]
+    if abs(y[node] - start) > 1e-9 * width:
+        raise SceneError(
+            f"the paper's scheme starts from a node, and y = {start:g} is none; change the grid"
+        )
     outputs = np.rint(np.asarray(times) / time_step).astype(int)
     if not np.allclose(outputs * time_step, times, rtol=1e-9):
         raise SceneError("the output times are not multiples of the time step; change either")
-    y = np.linspace(-half_width, half_width, nodes)
-    width = y[1] - y[0]
-    speed = -vectorised(scene.numerical_drift()[models.y], (models.y,))(y)
-    g = time_step * vectorised(scene.observable_expression, (models.y,))(y)
-    diffusion = scene.noise.sigma**2 / width**2
-    lower = -time_step / 2 * (diffusion + speed / width)
-    upper = -time_step / 2 * (diffusion - speed / width)
-    main = np.full(nodes, 1 + time_step * diffusion)
-    main[[0, -1]] = 1 / width, -1 / width
-    lower[-1], upper[0] = 1 / width, -1 / width
     *factors, info = dgttrf(lower[1:], main, upper[:-1])
     if info:
         raise SceneError("the paper's scheme is singular on this grid; refine it")
@@ -66,11 +60,54 @@ def moments(scene, times, half_width, nodes, time_step):
     w, v, slope = np.zeros((3, nodes))
     history = {0: (0.0, 0.0)}
     for k in range(1, outputs[-1] + 1):
-        w = solve(g + w)
+        w = solve(source + w)
         slope[1:-1] = (w[2:] - w[:-2]) / (2 * width)
         v = solve(time_step * scene.noise.sigma**2 * slope**2 + v)
-        history[k] = w[nodes // 2], v[nodes // 2]
+        history[k] = w[node], v[node]
     return tuple(np.array([history[k] for k in outputs]).T)
+
+
+def system(scene, half_width, nodes, time_step):
+    """Assemble the matrix M_Dt and the source Dt G_i.
+
+    Parameters
+    ----------
+    scene, half_width, nodes, time_step
+        As for `moments`.
+
+    Returns
+    -------
+    y : numpy.ndarray, shape (nodes,)
+        The grid.
+    lower, main, upper : numpy.ndarray, shape (nodes,)
+        Row i of M_Dt has lower[i], main[i], upper[i]; lower[0] and upper[-1] are outside.
+    source : numpy.ndarray, shape (nodes,)
+
+    Raises
+    ------
+    SceneError
+        If the scene has another state, or no node is at 0.
+    """
+    if scene.state != ("y",):
+        raise SceneError("the paper's scheme is one-dimensional; it takes the state (y)")
+    if nodes % 2 == 0:
+        raise SceneError(f"the paper's scheme needs an odd number of nodes, got {nodes}; add one")
+    y = np.linspace(-half_width, half_width, nodes)
+    width = y[1] - y[0]
+    speed = -vectorised(scene.numerical_drift()[models.y], (models.y,))(y)
+    diffusion = scene.noise.sigma**2 / width**2
+    lower = -time_step / 2 * (diffusion + speed / width)
+    upper = -time_step / 2 * (diffusion - speed / width)
+    main = np.full(nodes, 1 + time_step * diffusion)
+    main[[0, -1]] = 1 / width, -1 / width
+    lower[-1], upper[0] = 1 / width, -1 / width
+    return (
+        y,
+        lower,
+        main,
+        upper,
+        time_step * vectorised(scene.numerical_observable(), (models.y,))(y),
+    )
 
 
 def moments_with_error(scene, times, half_width, nodes, time_step):

@@ -40,14 +40,19 @@ def latex(cells):
 
 
 def typst(cells):
-    """Return a Typst table with three rules, as booktabs has them."""
+    """Return a Typst table with three rules, as booktabs has them.
+
+    ``cells.attrs["widths"]`` are Typst's widths of the columns, where text has to be broken.
+    """
+    widths = cells.attrs.get("widths")
+    columns = f"({', '.join(widths)})" if widths else len(cells.columns)
     header = ", ".join(f"[{_typst(str(name))}]" for name in cells.columns)
     rows = "".join(
         "  " + ", ".join(f"[{_typst(str(cell))}]" for cell in row) + ",\n"
         for row in cells.itertuples(index=False)
     )
     return (
-        f"#table(\n  columns: {len(cells.columns)},\n  table.hline(),\n"
+        f"#table(\n  columns: {columns},\n  table.hline(),\n"
         f"  table.header({header}),\n  table.hline(stroke: 0.4pt),\n{rows}  table.hline(),\n)\n"
     )
 
