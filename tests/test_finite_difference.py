@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth import finite_difference
+from nonsmooth import finite_difference, spectral
 from nonsmooth.errors import SceneError
 
 SCENE = ns.Scene("friction", n=10)  # the kinks at +-0.1 are nodes of all meshes below
@@ -16,6 +16,17 @@ HALF_WIDTH = 6.0
 def reference():
     """V by spectral elements, error below 1e-9."""
     return ns.variance(SCENE, TAU)["v"].values
+
+
+def test_other_starting_points():
+    """A node by the spectral elements within the error bound; between nodes it is refused."""
+    scene = ns.Scene("friction", n=5, start={"y": 1.0})
+    w, v, w_error, v_error = finite_difference.moments_with_error(scene, [2.0], 6.0, 601, 0.01)
+    exact = spectral.moments(scene, [2.0], 12)
+    assert abs(w - exact[0]) < w_error < 1e-2
+    assert abs(v - exact[1]) < v_error < 1e-2
+    with pytest.raises(SceneError, match="starts from a node"):
+        finite_difference.moments(ns.Scene("friction", start={"y": 0.511}), [1.0], 6.0, 601, 0.1)
 
 
 def test_first_order_in_time(reference):

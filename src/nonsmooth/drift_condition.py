@@ -1,6 +1,5 @@
 """Search for points at which the drift condition (HV2) or the bounds of its proof fail."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -163,9 +162,3 @@ def margins(scene, points=20_000, reach=1e6):
         coefficient=min(below.quadratic.values()),
         rounding=2 * operations * unit,
     )
-
-
-def radius(scene, level):
-    """Radius of a ball that contains the sublevel set {V_n <= level}, by (HV1)'s lower bound."""
-    slowest = min(lyapunov.lower_bound(scene).quadratic.values())
-    return math.sqrt(max(level - 1, 0.0) / slowest)

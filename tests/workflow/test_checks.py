@@ -1,17 +1,23 @@
 """The checks of the workflow fail when results contradict each other."""
 
 import runpy
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 from conftest import ROOT
 
+from nonsmooth import errata
+from nonsmooth.drift_condition import margins
 from nonsmooth.errors import CheckError
+from nonsmooth.scene import Scene
 
 TAU = np.array([0.1, 1.0, 10.0])
 SCRIPTS = ROOT / "workflow" / "scripts"
 deviations = runpy.run_path(str(SCRIPTS / "variance" / "check.py"))["deviations"]
+evaluate = runpy.run_path(str(SCRIPTS / "errata" / "errata.py"))["evaluate"]
+search = runpy.run_path(str(SCRIPTS / "theorems" / "drift_condition.py"))["search"]
 compare = runpy.run_path(str(SCRIPTS / "crossing" / "check.py"))["compare"]
 
 
@@ -87,3 +93,31 @@ def test_large_bias_fails(changes, message):
     """By the precise measurement or by the direct one."""
     with pytest.raises(CheckError, match=message):
         compare(*crossings(**changes))
+
+
+@pytest.mark.parametrize(("printed", "mended"), [(1.0, 1.0), (2.0, 3.0)])
+def test_a_wrong_erratum_fails(monkeypatch, printed, mended):
+    """What is printed is right, or what is mended is wrong."""
+    wrong = errata.Erratum("1", "", "", "", lambda: errata.Evidence("", printed, mended, 1.0))
+    monkeypatch.setitem(evaluate.__globals__, "ERRATA", [wrong])
+    with pytest.raises(CheckError, match="erratum 1: printed"):
+        evaluate()
+
+
+def test_a_violated_bound_fails(monkeypatch):
+    """Beyond rounding; claim S_4 as printed may."""
+    case = {"friction": ["x**2/2"]}, ["eta**2/2"], [1], [2]
+    good = margins(Scene("friction", n=2, potential="x**2/2"), points=300)
+    for change, fails in (
+        ({"forcing_printed": -0.5}, False),
+        ({"lower": -good.rounding}, False),
+        ({"lower": -3 * good.rounding}, True),
+        ({"drift": -0.1}, True),
+    ):
+        wrong = replace(good, **change)
+        monkeypatch.setitem(search.__globals__, "margins", lambda *given, wrong=wrong: wrong)
+        if fails:
+            with pytest.raises(CheckError, match="the inequality fails by"):
+                search(*case, points=300, reach=10.0)
+        else:
+            assert search(*case, points=300, reach=10.0).sizes["case"] == 3

@@ -35,6 +35,8 @@ def test_a_new_n_is_solved_alone(finished):
         "convergence_spectral": 1,
         "convergence_finite_difference": 1,
         "table_4": 1,
+        "errata": 1,
+        "table_errata": 1,
         "values": 1,
         "paper": 1,
     }
@@ -63,7 +65,7 @@ def test_more_paths_run_new_shards_only(finished):
 
 
 def test_a_module_reruns_exactly_the_rules_that_use_it(finished):
-    """finite_difference.py is imported by two compute scripts; its results feed the rest."""
+    """finite_difference.py is imported by three compute scripts; its results feed the rest."""
     with open(finished.folder / "src/nonsmooth/finite_difference.py", "a") as file:
         file.write("# changed\n")
     jobs = finished.jobs()
@@ -105,6 +107,7 @@ def test_named_targets(repository):
     names = [
         *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5")),
         *(f"table_{k}" for k in range(1, 5)),
+        *("table_6", "table_7", "table_errata"),
         *("figures", "tables", "paper"),
     ]
     assert set(names) <= repository.jobs(*names).keys()

@@ -15,7 +15,10 @@ from nonsmooth import artifact
 
 RESULTS = "results/smoke"
 FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"]
-TABLES = ["table_1", "table_2", "table_3", "table_4", "table_6", "table_time_step"]
+TABLES = [
+    *("table_1", "table_2", "table_3", "table_4", "table_6", "table_7"),
+    *("table_errata", "table_time_step"),
+]
 
 
 def test_every_figure_and_table_is_there(smoke_run):

@@ -38,6 +38,8 @@ rule values:
         crossing=rules.check_crossing.output[0],
         limit=rules.sweep_limit.output[0],
         convergence=rules.table_4.input.spectral,
+        drift_condition=rules.drift_condition.output[0],
+        errata=rules.errata.output[0],
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),
@@ -55,6 +57,7 @@ rule values:
         scheme=lookup(dpath="convergence/finite_difference", within=config),
         trajectories=lookup(dpath="trajectories", within=config),
         scenes=lookup(dpath="sweep", within=config),
+        theorems=lookup(dpath="theorems", within=config),
         seed=lookup(dpath="seed", within=config),
     message:
         "Collect the numbers that the text quotes"

@@ -37,7 +37,7 @@ def errata(evidence):
                 "value, printed": _number(row["printed"]),
                 "value, mended": _number(row["mended"]),
                 "reference": _number(row["reference"], sign, digits=8),
-                r"$\pm$": scientific(error, digits=0, bound=True) if error else "$0$",
+                r"$\pm$": scientific(error) if error else "$0$",
                 "evidence": text["kind"],
             }
         )

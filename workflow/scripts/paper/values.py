@@ -4,9 +4,12 @@ import json
 
 import tylax
 import yaml
+from sympy import latex
 
+from nonsmooth.expressions import parse
 from nonsmooth.files import whole
 from nonsmooth.jobs import inputs, job
+from nonsmooth.models import eta, x
 from nonsmooth.tables import scientific
 
 PRINTED = "paper/printed.yaml"
@@ -19,12 +22,15 @@ def values(
     crossing,
     limit,
     convergence,
+    drift_condition,
+    errata,
     variance,
     sweep,
     horizon,
     scheme,
     trajectories,
     scenes,
+    theorems,
     seed,
 ):
     """Collect numbers from the artifacts and the configuration.
@@ -35,8 +41,10 @@ def values(
         The artifacts.
     convergence : list of xarray.Dataset
         Spectral solutions of table 4, one per n.
-    variance, sweep, trajectories, scenes : dict
-        Sections of the configuration: figure 2a, figure 2b, trajectories, every scene.
+    drift_condition, errata : xarray.Dataset
+        Table 7 and the table of errata.
+    variance, sweep, trajectories, scenes, theorems : dict
+        Sections of the configuration: figure 2a, figure 2b, trajectories, every scene, table 7.
     horizon, scheme
         Horizon and finite differences of table 4.
     seed : int
@@ -113,8 +121,28 @@ def values(
                 for model, parameters in trajectories["models"].items()
             },
         },
+        "theorems": {
+            "cases": str(drift_condition.sizes["case"]),
+            "points": f"{theorems['points']:,}",
+            "reach": _scientific(theorems["reach"]),
+            "damping": ", ".join(f"{c:g}" for c in theorems["damping"]),
+            "n": ", ".join(f"{n:,}" for n in theorems["n"]),
+            "potentials": [_formula(U, x) for U in theorems["potentials"]["obstacle"]],
+            "langevin": [_formula(v, eta) for v in theorems["langevin"]],
+            "drift": f"{float(drift_condition['drift'].min()):.2f}",
+            "printed": f"{-float(drift_condition['forcing_printed'].min()):.2f}",
+            "rounding": _scientific(drift_condition["drift_error"].max(), bound=True),
+        },
+        "errata": {
+            "rows": str(errata.sizes["entry"]),
+            "entries": str(len({str(entry).strip("abcd") for entry in errata["entry"].values})),
+        },
         "seed": str(seed),
     }
+
+
+def _formula(text, variable):
+    return tylax.latex_to_typst(latex(parse(text, (variable,))))
 
 
 def _scientific(value, bound=False):
