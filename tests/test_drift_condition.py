@@ -68,11 +68,11 @@ def test_supremum_is_found_off_the_grid():
 def test_wrong_constants_are_found_out(monkeypatch, change, noise, name):
     """The search is one that can fail."""
     scene = ns.Scene("elasto_plastic", noise, n=2, potential="x**2/2")
-    lyapunov._functions.cache_clear()
+    lyapunov.functions.cache_clear()
     wrong = replace(lyapunov.constants(scene), **change)
     monkeypatch.setattr(lyapunov, "constants", lambda scene: wrong)
     m = margins(scene, points=3000)
-    lyapunov._functions.cache_clear()
+    lyapunov.functions.cache_clear()
     assert getattr(m, name) < -1e-3
 
 

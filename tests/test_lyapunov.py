@@ -5,7 +5,7 @@ import pytest
 import sympy
 
 import nonsmooth as ns
-from nonsmooth import generic, lyapunov
+from nonsmooth import drift_bounds, generic, lyapunov
 from nonsmooth.errors import SceneError
 from nonsmooth.lyapunov import C_V, C_b, K, M, delta, epsilon, xi
 from nonsmooth.models import STATE_VARIABLES, eta, x, y, zeta
@@ -102,7 +102,7 @@ def test_constants_satisfy_the_boxed_inequalities(noise, potential):
 
 def test_bound_has_its_supremum():
     """K + slope^2/(4 quadratic) for each variable, attained."""
-    bound = lyapunov.Bound(3.0, {y: 2.0, x: 0.5}, {y: 4.0, x: 1.0})
+    bound = drift_bounds.Bound(3.0, {y: 2.0, x: 0.5}, {y: 4.0, x: 1.0})
     at = {y: np.array([1.0]), x: np.array([-1.0])}
     assert bound.evaluate(at)[0][0] == pytest.approx(bound.supremum) == pytest.approx(5.5)
 

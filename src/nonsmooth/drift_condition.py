@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from nonsmooth import lyapunov
+from nonsmooth import drift_bounds, lyapunov
 from nonsmooth.models import STATE_VARIABLES, eta, x, y, zeta
 
 _SMALLEST = 1e-6  # least non-zero value on each axis, besides the kinks
@@ -115,7 +115,7 @@ def margins(scene, points=20_000, reach=1e6):
     names = variables(scene)
     z = grid(scene, names, points, reach)
     value, magnitude = lyapunov.evaluate(scene, z)
-    boxed = lyapunov.bound(scene)
+    boxed = drift_bounds.bound(scene)
     best = int(np.argmax(value))
     top, spread = float(value[best]), float(magnitude[best])
     start = np.array([z[s][best] for s in names])
@@ -136,17 +136,19 @@ def margins(scene, points=20_000, reach=1e6):
     if scene.noise.kind != "white":
         own = tuple(s for s in (zeta, eta) if s in names)
         w = grid(scene, own, points, reach)
-        drift = lyapunov.noise_drift(scene, w)
-        forcing = _smallest(lyapunov.noise_bound(scene).evaluate(w), drift)
-        forcing_printed = _smallest(lyapunov.noise_bound(scene, printed=True).evaluate(w), drift)
+        drift = drift_bounds.noise_drift(scene, w)
+        forcing = _smallest(drift_bounds.noise_bound(scene).evaluate(w), drift)
+        forcing_printed = _smallest(
+            drift_bounds.noise_bound(scene, printed=True).evaluate(w), drift
+        )
     mechanical = 1.0
     if x in names:
         w = grid(scene, (y, x), points, reach)
         mechanical = min(
-            _smallest(bound, value) for value, bound in lyapunov.mechanical_claims(scene, w)
+            _smallest(bound, value) for value, bound in drift_bounds.mechanical_claims(scene, w)
         )
     V, terms = lyapunov.evaluate(scene, z, "value")
-    below = lyapunov.lower_bound(scene)
+    below = drift_bounds.lower_bound(scene)
     unit = np.finfo(float).eps
     operations = 4 * len(STATE_VARIABLES) + 8  # products within and sums over the terms
     return Margins(

@@ -14,7 +14,7 @@ import scipy.linalg
 import sympy
 from scipy.integrate import quad
 
-from nonsmooth import assumptions, generic, lyapunov, spectral
+from nonsmooth import assumptions, drift_bounds, generic, lyapunov, spectral
 from nonsmooth.brownian import brownian_crossing
 from nonsmooth.closed_form import friction_variance
 from nonsmooth.finite_difference import moments_with_error, system
@@ -357,11 +357,11 @@ def claim_constant():
     """Compare the bounds at the origin with S_4(0, 0)."""
     scene = _noisy(1.0)
     origin = {s: np.zeros(1) for s in (eta, zeta)}
-    value, terms = lyapunov.noise_drift(scene, origin)
+    value, terms = drift_bounds.noise_drift(scene, origin)
     return Evidence(
         r"$S_4(0, 0) \leq$, $k = \gamma_0 = 1$",
-        lyapunov.noise_bound(scene, printed=True).constant,
-        lyapunov.noise_bound(scene).constant,
+        drift_bounds.noise_bound(scene, printed=True).constant,
+        drift_bounds.noise_bound(scene).constant,
         float(value[0] if np.ndim(value) else value),
         1e-13 * float(np.max(terms)),
         "bound",
