@@ -3,6 +3,8 @@
 import re
 
 import pytest
+import yaml
+from conftest import ROOT
 
 from nonsmooth.closed_form import friction_variance
 from nonsmooth.errata import ERRATA, Evidence
@@ -65,6 +67,16 @@ def test_known_values(evidence):
     assert evidence["3b"].reference == pytest.approx(4 / 0.72, rel=1e-13)  # k^2/(gamma_0^2 k)
     assert evidence["4"].reference == pytest.approx(friction_variance(100)[0], rel=1e-10)
     assert evidence["14b"].reference == 1
+
+
+def test_printed_numbers_are_the_papers(evidence):
+    """Those that paper/printed.yaml has too."""
+    printed = yaml.safe_load((ROOT / "paper" / "printed.yaml").read_text(encoding="utf-8"))
+    table = printed["tab:convergence-vng-n"]
+    assert evidence["4"].printed == printed["fig:fpn-cmp-PDE-MC"]["asymptotic_value"]
+    assert [evidence[label].printed for label in ("5a", "5b", "5c")] == [
+        table[n] for n in (100, 2, 50)
+    ]
 
 
 def test_only_one_entry_of_table_4_is_truncated(evidence):
