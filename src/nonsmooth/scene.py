@@ -143,7 +143,7 @@ class Scene:
         """The mechanical model's definition."""
         return models.MODELS[self.model]
 
-    @property
+    @cached_property
     def variables(self):
         """All the variables of the paper's state Z^n, whether the observable needs them or not."""
         own = set(self.noise.drift)
