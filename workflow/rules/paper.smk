@@ -1,6 +1,9 @@
 # The paper: every figure, every table, every number, typeset.
 
-FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"]
+FIGURES = [
+    *["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"],
+    *["figure_8", "figure_9"],
+]
 TABLES = ["table_1", "table_2", "table_3", "table_4", "table_6", "table_time_step"]
 
 
@@ -29,6 +32,9 @@ rule values:
         crossing=rules.check_crossing.output[0],
         limit=rules.sweep_limit.output[0],
         convergence=rules.table_4.input.spectral,
+        theorem=rules.check_limit_theorem.output[0],
+        deformation=rules.check_plasticity.output[0],
+        deformation_variance=rules.plasticity_variance.output[0],
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),
@@ -46,6 +52,8 @@ rule values:
         scheme=lookup(dpath="convergence/finite_difference", within=config),
         trajectories=lookup(dpath="trajectories", within=config),
         scenes=lookup(dpath="sweep", within=config),
+        limit_theorem=lookup(dpath="limit_theorem", within=config),
+        plasticity=lookup(dpath="plasticity", within=config),
         seed=lookup(dpath="seed", within=config),
     message:
         "Collect the numbers that the text quotes"

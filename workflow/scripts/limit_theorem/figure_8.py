@@ -58,7 +58,15 @@ def distances(check, scenes):
                 label=text,
             )
         panel.axhspan(lowest / 2, floor, color="0.9", linewidth=0, zorder=0, label="sampling error")
-        panel.plot(p, 1.5 / np.sqrt(p), color="0.5", linewidth=0.6, label=r"$\propto p^{-1/2}$")
+        last = float(run["maximum"][-1])
+        panel.plot(
+            p,
+            last * np.sqrt(p[-1] / p),
+            color="0.5",
+            linewidth=0.6,
+            zorder=1,
+            label=r"$\propto p^{-1/2}$",
+        )
     for row, model in zip(axes, rows, strict=True):
         row[0].set_ylabel(f"{MODELS[model].title.lower()}\ndistance")
     for panel, noise in zip(axes[0], columns, strict=True):
