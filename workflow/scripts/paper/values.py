@@ -225,7 +225,7 @@ def _example(section):
 
 
 def _literal(value):
-    return 'float("inf")' if value == float("inf") else repr(value)
+    return 'float("inf")' if value == float("inf") else json.dumps(value)
 
 
 def _scientific(value, bound=False):
