@@ -8,9 +8,10 @@ from nonsmooth.noises import NOISES
 from nonsmooth.plotting import BLUE, ORANGE, TEXT_WIDTH, draw
 from nonsmooth.scene import Scene
 
+# the factor of p moves the points apart, so that their error bars do not cover each other
 LOOKS = {
-    "final": (BLUE, "o", "-", r"$\Xi_p(1)/\gamma$ to the normal law"),
-    "maximum": (ORANGE, "s", "--", r"$\max\,|\Xi_p|/\gamma$ to that of $|W|$"),
+    "final": (BLUE, "o", "-", 0.92, r"$\Xi_p(1)/\gamma$ to the normal law"),
+    "maximum": (ORANGE, "s", "--", 1.08, r"$\max\,|\Xi_p|/\gamma$ to that of $|W|$"),
 }
 
 
@@ -42,10 +43,10 @@ def distances(check, scenes):
     for name, parameters in scenes.items():
         scene, run = Scene(**parameters["scene"]), check.sel(scene=name)
         panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
-        for quantity, (color, marker, dashes, text) in LOOKS.items():
+        for quantity, (color, marker, dashes, factor, text) in LOOKS.items():
             distance, error = run[quantity].values, run[f"{quantity}_error"].values
             panel.errorbar(
-                p,
+                factor * p,
                 distance,
                 # to the lower edge where nothing is known below
                 [distance - np.maximum(distance - error, lowest / 2), error],
