@@ -143,7 +143,7 @@ def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
 
 def test_a_new_limit_of_the_deformation_is_simulated_alone(finished):
     """gamma^2 is not computed again."""
-    edit(finished.folder / "config.yaml", "limits: [2, 4, 8]", "limits: [2, 4, 6]")
+    edit(finished.folder / "config/smoke.yaml", "limits: [4]", "limits: [4, 6]")
     assert finished.jobs() == {
         "plasticity_crossing": 1,
         "check_plasticity": 1,
