@@ -23,6 +23,7 @@ wildcard_constraints:
     model="elasto_plastic|friction|obstacle",
     n="[0-9.e+-]+|inf",
     p="[0-9.e+-]+",
+    limit="[0-9.e+-]+",
     shard="[0-9]+",
     scene="[a-z0-9_]+",
 
@@ -41,4 +42,6 @@ include: "workflow/rules/convergence.smk"
 include: "workflow/rules/sweep.smk"
 include: "workflow/rules/theorems.smk"
 include: "workflow/rules/errata.smk"
+include: "workflow/rules/limit_theorem.smk"
+include: "workflow/rules/plasticity.smk"
 include: "workflow/rules/paper.smk"

@@ -48,7 +48,7 @@ class Repository:
             cwd=self.folder,
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=600,  # against a hang; a busy machine takes several times the usual
         )
 
     def jobs(self, *targets):

@@ -10,6 +10,7 @@ import yaml
 from nonsmooth.configuration import validate
 from nonsmooth.errors import AssumptionWarning, ConfigError, SceneError
 from nonsmooth.noises import Langevin
+from nonsmooth.plasticity import yielding_oscillator
 from nonsmooth.scene import Scene
 
 SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"
@@ -48,6 +49,10 @@ def check(config):
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
     _check_theorems(config["theorems"])
+    p = config["limit_theorem"]["p"]
+    if sorted(set(p)) != p:
+        raise ConfigError(f"config: 'limit_theorem.p' = {p} must increase; sort them")
+    yielding_oscillator(config["plasticity"]["ground"], config["plasticity"]["oscillator"])
     for model, parameters in config["trajectories"]["models"].items():
         Scene(model, potential=parameters["potential"], damping=parameters["damping"])
     for key, path in config["outputs"].items():

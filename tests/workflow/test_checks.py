@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import ROOT
+from scipy.special import ndtr, ndtri
 
 from nonsmooth import errata
+from nonsmooth.brownian import brownian_crossing
 from nonsmooth.drift_condition import margins
 from nonsmooth.errors import CheckError
 from nonsmooth.scene import Scene
@@ -19,6 +21,8 @@ deviations = runpy.run_path(str(SCRIPTS / "variance" / "check.py"))["deviations"
 evaluate = runpy.run_path(str(SCRIPTS / "errata" / "errata.py"))["evaluate"]
 search = runpy.run_path(str(SCRIPTS / "theorems" / "drift_condition.py"))["search"]
 compare = runpy.run_path(str(SCRIPTS / "crossing" / "check.py"))["compare"]
+distances = runpy.run_path(str(SCRIPTS / "limit_theorem" / "check.py"))["distances"]
+deformation = runpy.run_path(str(SCRIPTS / "plasticity" / "check.py"))["compare"]
 
 
 def three_methods(**changes):
@@ -121,3 +125,76 @@ def test_a_violated_bound_fails(monkeypatch):
                 search(*case, points=300, reach=10.0)
         else:
             assert search(*case, points=300, reach=10.0).sizes["case"] == 3
+
+
+P = np.array([10.0, 100.0, 1000.0])
+
+
+def theorem(gamma=1.0, shift=0.5, paths=20_000):
+    """Artifacts of figure 8: normal and maximal quantiles, shifted by shift / sqrt(p).
+
+    Equidistant quantiles in the place of random numbers: nothing here happens by chance.
+    """
+    level = (np.arange(paths) + 0.5) / paths
+    final = ndtri(level)
+    grid = np.linspace(0.05, 6, 4001)
+    maximum = np.interp(level, 1 - brownian_crossing(grid, 1.0), grid)
+    moved = [gamma * (values + shift / np.sqrt(P)[:, None]) for values in (final, maximum)]
+    samples = xr.Dataset(
+        {name: (("p", "path"), v) for name, v in zip(("final", "maximum"), moved, strict=True)},
+        coords={"p": P},
+    )
+    limit = xr.Dataset(
+        {"gamma2": ("scene", [1.0]), "gamma2_error": ("scene", [1e-3])}, coords={"scene": ["a"]}
+    )
+    return [samples], limit, ["a"]
+
+
+def test_distances_that_fall_pass():
+    """Exact laws shifted by s have the distances 2 Phi(s/2) - 1 for the normal law."""
+    result = distances(*theorem())
+    expected = 2 * ndtr(0.25 / np.sqrt(P)) - 1
+    assert np.allclose(result["final"].sel(scene="a"), expected, atol=1e-4)
+    assert np.all(np.diff(result["maximum"].sel(scene="a")) < 0)
+    assert np.all(result["final_error"] > result["floor"])
+
+
+@pytest.mark.parametrize("changes", [{"gamma": 1.25}, {"gamma": 0.8}, {"gamma": np.nan}])
+def test_a_wrong_gamma_fails(changes):
+    """Distances that stay, and samples that are not numbers."""
+    with pytest.raises(CheckError, match=r"a: at p = 1000 .* look for a mistake"):
+        distances(*theorem(**changes))
+
+
+def exceedances(bias=1e-3, bias_error=1e-3):
+    """Artifacts of figure 9 for two limits; Monte Carlo is 0.1 below the formula."""
+    duration = {"duration": TAU}
+    runs = []
+    for limit in (1.0, 2.0):
+        values = {
+            "probability": brownian_crossing(limit / 0.5, TAU) - 0.1,
+            "probability_error": 2e-3,
+            "bias": bias,
+            "bias_error": bias_error,
+        }
+        runs.append(
+            xr.Dataset(
+                {k: ("duration", np.broadcast_to(v, 3)) for k, v in values.items()},
+                coords=duration | {"limit": limit},
+            )
+        )
+    return xr.Dataset({"gamma2": 0.25, "gamma2_error": 1e-3}), runs
+
+
+def test_difference_of_formula_and_monte_carlo():
+    """Is what it was made to be; its error has both parts."""
+    result = deformation(*exceedances())
+    assert np.allclose(result["difference"], 0.1)
+    parts = np.hypot(result["probability_error"], 2e-3)
+    assert np.allclose(result["difference_error"], parts)
+
+
+def test_a_large_bias_of_the_deformation_fails():
+    """Significantly above the standard error."""
+    with pytest.raises(CheckError, match="bias at the limit 1"):
+        deformation(*exceedances(bias=2e-2))

@@ -105,7 +105,7 @@ def test_the_template_reruns_the_paper_only(finished):
 def test_named_targets(repository):
     """Each exists."""
     names = [
-        *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5")),
+        *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5", "6", "8", "9")),
         *(f"table_{k}" for k in range(1, 5)),
         *("table_6", "table_7", "table_errata"),
         *("figures", "tables", "paper"),
@@ -142,3 +142,25 @@ def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
     jobs = finished.jobs()
     assert {name for name in jobs if name.startswith("sweep")} == {"sweep_crossing"}
     assert jobs["sweep_crossing"] == 9
+
+
+def test_a_new_limit_of_the_deformation_is_simulated_alone(finished):
+    """gamma^2 is not computed again."""
+    edit(finished.folder / "config/smoke.yaml", "limits: [4]", "limits: [4, 6]")
+    assert finished.jobs() == {
+        "plasticity_crossing": 1,
+        "check_plasticity": 1,
+        "figure_9": 1,
+        "values": 1,
+        "paper": 1,
+    }
+
+
+def test_gamma_does_not_rerun_the_samples_of_the_limit_theorem(finished):
+    """growth.py gives gamma^2; the samples are divided by it afterwards."""
+    with open(finished.folder / "src/nonsmooth/growth.py", "a") as file:
+        file.write("# changed\n")
+    jobs = finished.jobs()
+    assert jobs["sweep_variance"] == 9
+    assert jobs["check_limit_theorem"] == 1
+    assert "limit_theorem_samples" not in jobs

@@ -1,15 +1,12 @@
 # The paper: every figure, every table, every number, typeset.
 
-FIGURES = ["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"]
+FIGURES = [
+    *["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"],
+    *["figure_8", "figure_9"],
+]
 TABLES = [
-    "table_1",
-    "table_2",
-    "table_3",
-    "table_4",
-    "table_6",
-    "table_7",
-    "table_errata",
-    "table_time_step",
+    *["table_1", "table_2", "table_3", "table_4", "table_6", "table_7"],
+    *["table_errata", "table_time_step"],
 ]
 
 
@@ -40,6 +37,9 @@ rule values:
         convergence=rules.table_4.input.spectral,
         drift_condition=rules.drift_condition.output[0],
         errata=rules.errata.output[0],
+        theorem=rules.check_limit_theorem.output[0],
+        deformation=rules.check_plasticity.output[0],
+        deformation_variance=rules.plasticity_variance.output[0],
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),
@@ -58,6 +58,8 @@ rule values:
         trajectories=lookup(dpath="trajectories", within=config),
         scenes=lookup(dpath="sweep", within=config),
         theorems=lookup(dpath="theorems", within=config),
+        limit_theorem=lookup(dpath="limit_theorem", within=config),
+        plasticity=lookup(dpath="plasticity", within=config),
         seed=lookup(dpath="seed", within=config),
     message:
         "Collect the numbers that the text quotes"

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import tylax
 import yaml
 from sympy import latex
@@ -10,9 +11,11 @@ from nonsmooth.expressions import parse
 from nonsmooth.files import whole
 from nonsmooth.jobs import inputs, job
 from nonsmooth.models import eta, x
-from nonsmooth.tables import scientific
+from nonsmooth.plasticity import relaxation_time
+from nonsmooth.tables import penalization, scientific
 
 PRINTED = "paper/printed.yaml"
+SIGNIFICANT = 3.0  # standard errors from which on the text calls the formula too low
 
 
 def values(
@@ -24,6 +27,9 @@ def values(
     convergence,
     drift_condition,
     errata,
+    theorem,
+    deformation,
+    deformation_variance,
     variance,
     sweep,
     horizon,
@@ -31,20 +37,25 @@ def values(
     trajectories,
     scenes,
     theorems,
+    limit_theorem,
+    plasticity,
     seed,
 ):
     """Collect numbers from the artifacts and the configuration.
 
     Parameters
     ----------
-    spectral, monte_carlo, agreement, crossing, limit : xarray.Dataset
+    spectral, monte_carlo, agreement, crossing, limit, theorem : xarray.Dataset
         The artifacts.
+    deformation, deformation_variance : xarray.Dataset
+        The formula for the permanent deformation against Monte Carlo, and its gamma^2.
     convergence : list of xarray.Dataset
         Spectral solutions of table 4, one per n.
     drift_condition, errata : xarray.Dataset
         Table 7 and the table of errata.
-    variance, sweep, trajectories, scenes, theorems : dict
-        Sections of the configuration: figure 2a, figure 2b, trajectories, every scene, table 7.
+    variance, sweep, trajectories, scenes, theorems, limit_theorem, plasticity : dict
+        Sections of the configuration: figure 2a, figure 2b, trajectories, every scene, table 7,
+        figure 8, figure 9.
     horizon, scheme
         Horizon and finite differences of table 4.
     seed : int
@@ -111,6 +122,8 @@ def values(
             "allowed": f"{float(limit['allowed']):g}",
             "standard_error": f"{0.5 / scenes['paths'] ** 0.5 + 5e-5:.4f}",
         },
+        "limit_theorem": _limit_theorem(theorem, limit_theorem),
+        "plasticity": _plasticity(deformation, deformation_variance, plasticity),
         "trajectories": {
             "step": f"{trajectories['step']:g}",
             "models": {
@@ -143,6 +156,104 @@ def values(
 
 def _formula(text, variable):
     return tylax.latex_to_typst(latex(parse(text, (variable,))))
+
+
+def _limit_theorem(theorem, section):
+    """Extreme distances of all scenes at the largest p, and how fast the maximum's fall there."""
+    last = theorem.isel(p=-1)
+    p = theorem["p"].values[-2:]
+    pair = theorem["maximum"].values[:, -2:]
+    exponents = np.log(pair[:, 1] / pair[:, 0]) / np.log(p[1] / p[0])
+    return {
+        "paths": f"{section['paths']:,}",
+        "p": ", ".join(f"{p:g}" for p in section["p"]),
+        "largest_p": f"{p[1]:g}",
+        "before": f"{p[0]:g}",
+        "floor": f"{float(theorem['floor']):.4f}",
+        "false_alarm": _scientific(theorem["false_alarm"]),
+        "final_largest": f"{float(last['final'].max()):.4f}",
+        "maximum_smallest": f"{float(last['maximum'].min()):.3f}",
+        "maximum_largest": f"{float(last['maximum'].max()):.3f}",
+        "exponent_smallest": f"{exponents.max():.2f}",
+        "exponent_largest": f"{exponents.min():.2f}",
+    }
+
+
+def _plasticity(deformation, variance, section):
+    """Parameters of the example, the differences for each limit, the code that computes it."""
+    oscillator, ground = section["oscillator"], section["ground"]
+    duration, gamma2 = deformation["duration"].values, float(variance["gamma2"])
+    limits, low = [], 0.0
+    for limit, run in deformation.groupby("limit"):
+        run = run.squeeze("limit")
+        formula, difference, error = (
+            run[name].values for name in ("probability", "difference", "difference_error")
+        )
+        sampled = formula - difference
+        largest, least = np.argmax(np.abs(difference)), np.argmin(difference)
+        too_low = difference < -SIGNIFICANT * error
+        low = max(low, *sampled[too_low], 0.0)
+        limits.append(
+            {
+                "limit": f"{limit:g}",
+                "scaled": f"{limit / np.sqrt(gamma2 * duration[-1]):.2f}",
+                "formula": f"{formula[-1]:.3f}",
+                "sampled": f"{sampled[-1]:.3f}",
+                "last": f"{difference[-1]:+.3f}",
+                "last_ratio": f"{abs(difference[-1]) / error[-1]:.0f}",
+                "largest": f"{difference[largest]:+.3f}",
+                "largest_ratio": f"{abs(difference[largest]) / error[largest]:.0f}",
+                "largest_at": f"{duration[largest]:g}",
+                "low_formula": f"{formula[least]:.4f}",
+                "low_sampled": f"{sampled[least]:.4f}",
+                "low_at": f"{duration[least]:g}",
+                "low_ratio": f"{abs(difference[least]) / error[least]:.0f}",
+            }
+        )
+    return {
+        "ground": {key: f"{value:g}" for key, value in ground.items()},
+        "frequency": f"{np.sqrt(ground['stiffness']):g}",
+        "damping_ratio": f"{ground['damping'] / np.sqrt(ground['stiffness']) / 2:.2g}",
+        "n": penalization(oscillator["n"]).strip("$").replace(r"\infty", "oo"),
+        "damping": f"{oscillator['damping']:g}",
+        "potential": oscillator["potential"],
+        "paths": f"{section['paths']:,}",
+        "duration": f"{section['duration']:g}",
+        "periods": f"{section['duration'] / (2 * np.pi):.0f}",
+        "relaxation": f"{relaxation_time(oscillator):g}",
+        "relaxations": f"{section['duration'] / relaxation_time(oscillator):g}",
+        "gamma2": f"{gamma2:.4f}",
+        "gamma2_error": _scientific(variance["gamma2_error"], bound=True),
+        "limits": limits,
+        "low": f"{low:.2g}",
+        "significant": f"{SIGNIFICANT:g}",
+        "code": _example(section),
+    }
+
+
+def _example(section):
+    """Python that computes the example's last probability of the middle limit."""
+    ground, oscillator = (
+        ", ".join(f"{key}={_literal(value)}" for key, value in section[name].items())
+        for name in ("ground", "oscillator")
+    )
+    limit = sorted(section["limits"])[len(section["limits"]) // 2]
+    return "\n".join(
+        [
+            "import nonsmooth as ns",
+            "",
+            f"ground = ns.KanaiTajimi({ground})",
+            'scene = ns.Scene("elasto_plastic", ground, observable="plastic_strain_rate",',
+            f"                 {oscillator})",
+            f"gamma2 = ns.asymptotic_variance(scene, tol={section['tolerance']:g}).value",
+            f"limit, duration = {limit:g}, {section['duration']:g}",
+            "ns.brownian_crossing(limit / gamma2**0.5, duration)",
+        ]
+    )
+
+
+def _literal(value):
+    return 'float("inf")' if value == float("inf") else json.dumps(value)
 
 
 def _scientific(value, bound=False):

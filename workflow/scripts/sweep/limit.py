@@ -25,7 +25,7 @@ def limit(variance, scenes, horizon, outputs):
     Returns
     -------
     xarray.Dataset
-        Over (scene, horizon).
+        Over (scene, horizon); with the gamma^2 that everything else takes from here.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def limit(variance, scenes, horizon, outputs):
         of gamma^2.
     """
     horizons = horizon / outputs * np.arange(1, outputs + 1)
-    curves = []
+    rates, errors, curves = [], [], []
     for (name, parameters), run in zip(scenes.items(), variance, strict=True):
         value = {key: float(run[key]) for key in run.data_vars}
         if abs(value["mean"]) > ALLOWED * value["mean_error"]:
@@ -51,9 +51,9 @@ def limit(variance, scenes, horizon, outputs):
                 f"the time step's bias of {name} is above the standard error; reduce sweep.step"
             )
         error = np.linalg.norm([value[k] for k in ("gamma2_error", "bias", "bias_error")])
-        curves.append(
-            asymptotic_crossing(parameters["threshold"], horizons, value["gamma2"], error)
-        )
+        rates.append(value["gamma2"])
+        errors.append(error)
+        curves.append(asymptotic_crossing(parameters["threshold"], horizons, rates[-1], error))
     probability, probability_error = np.swapaxes(curves, 0, 1)
     over = ("scene", "horizon")
     return artifact.dataset(
@@ -66,6 +66,8 @@ def limit(variance, scenes, horizon, outputs):
         {
             "probability": (over, probability, "W_star(b / gamma, T)"),
             "probability_error": (over, probability_error, "error inherited from gamma^2"),
+            "gamma2": ("scene", rates, "growth rate of the variance of int_0^t g"),
+            "gamma2_error": ("scene", errors, "standard error and bias by the time step"),
             "allowed": ((), ALLOWED, "standard errors that a mean of zero may be off"),
         },
     )

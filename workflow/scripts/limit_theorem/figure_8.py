@@ -1,0 +1,83 @@
+"""Figure 8: distances of every scene to the limits of the functional central limit theorem."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from nonsmooth.models import MODELS
+from nonsmooth.noises import NOISES
+from nonsmooth.plotting import BLUE, ORANGE, TEXT_WIDTH, draw
+from nonsmooth.scene import Scene
+
+# the factor of p moves the points apart, so that their error bars do not cover each other
+LOOKS = {
+    "final": (BLUE, "o", "-", 0.92, r"$\Xi_p(1)/\gamma$ to the normal law"),
+    "maximum": (ORANGE, "s", "--", 1.08, r"$\max\,|\Xi_p|/\gamma$ to that of $|W|$"),
+}
+
+
+def distances(check, scenes):
+    """Draw one panel per scene, models in rows and noises in columns.
+
+    Parameters
+    ----------
+    check : xarray.Dataset
+        Distances with their errors over (scene, p).
+    scenes : dict
+        Name -> the scene's parameters.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows, columns = list(MODELS), list(NOISES)
+    figure, axes = plt.subplots(
+        len(rows),
+        len(columns),
+        figsize=(TEXT_WIDTH, TEXT_WIDTH),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+    )
+    p, floor = check["p"].values, float(check["floor"])
+    lowest = floor / 5
+    for name, parameters in scenes.items():
+        scene, run = Scene(**parameters["scene"]), check.sel(scene=name)
+        panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
+        for quantity, (color, marker, dashes, factor, text) in LOOKS.items():
+            distance, error = run[quantity].values, run[f"{quantity}_error"].values
+            panel.errorbar(
+                factor * p,
+                distance,
+                # to the lower edge where nothing is known below
+                [distance - np.maximum(distance - error, lowest / 2), error],
+                color=color,
+                marker=marker,
+                markersize=3.5,
+                linestyle=dashes,
+                elinewidth=0.7,
+                capsize=1.5,
+                label=text,
+            )
+        panel.axhspan(lowest / 2, floor, color="0.9", linewidth=0, zorder=0, label="sampling error")
+        last = float(run["maximum"][-1])
+        panel.plot(
+            p,
+            last * np.sqrt(p[-1] / p),
+            color="0.5",
+            linewidth=0.6,
+            zorder=1,
+            label=r"$\propto p^{-1/2}$",
+        )
+    for row, model in zip(axes, rows, strict=True):
+        row[0].set_ylabel(f"{MODELS[model].title.lower()}\ndistance")
+    for panel, noise in zip(axes[0], columns, strict=True):
+        panel.set_title(f"{noise} noise", fontsize=8, loc="left")
+    for panel in axes[-1]:
+        panel.set_xlabel("$p$")
+    axes[0, 0].set(xscale="log", yscale="log", ylim=(lowest, 1.5))
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return figure
+
+
+if __name__ == "__main__":
+    draw(distances, snakemake)

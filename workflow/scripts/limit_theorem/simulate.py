@@ -1,0 +1,36 @@
+"""Samples of Xi_p(1) and of the running maximum of |Xi_p| of one scene, for every p."""
+
+from functools import partial
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.jobs import produce
+from nonsmooth.limit_theorem import scaled_integrals
+from nonsmooth.scene import Scene
+
+
+def simulate(scene, p, step, paths, seed, threads):
+    """Simulate every p on the same paths: to start a process takes longer than a small p.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene)
+    final, maximum = scaled_integrals(scene, p, step, paths, (seed, "limit theorem"), threads)
+    over = ("p", "path")
+    return artifact.dataset(
+        "Samples of the scaled integral of the observable",
+        f"{paths} paths of {scene}",
+        {"p": ("p", np.array(p, dtype=float), "scale p")},
+        {
+            # single precision, as the maximum is simulated
+            "final": (over, final.astype(np.float32), "Xi_p(1)"),
+            "maximum": (over, maximum.astype(np.float32), "max over t <= 1 of |Xi_p(t)|"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(simulate, threads=snakemake.threads), snakemake)

@@ -1,0 +1,56 @@
+"""Probability that the permanent deformation has exceeded one limit, by Monte Carlo."""
+
+from functools import partial
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.crossing import DESCRIPTIONS, crossing_probability
+from nonsmooth.jobs import produce
+from nonsmooth.plasticity import yielding_oscillator
+
+
+def crossing(ground, oscillator, limit, duration, outputs, step, paths, seed, threads):
+    """Simulate from rest and count the paths that have exceeded the limit, by duration.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = yielding_oscillator(ground, oscillator)
+    durations = duration / outputs * np.arange(1, outputs + 1)
+    found = crossing_probability(
+        scene,
+        limit,
+        durations,
+        step=step,
+        paths=paths,
+        seed=(seed, f"plasticity, limit = {limit}"),
+        threads=threads,
+    )
+    return artifact.dataset(
+        "Probability that the permanent deformation has exceeded a limit, by Monte Carlo",
+        f"{paths} paths of {scene}, limit = {limit}",
+        {
+            "duration": ("duration", durations, "duration of the earthquake"),
+            "limit": ((), limit, "limit of the permanent deformation"),
+        },
+        {
+            name: ("duration", found[name].values, text)
+            for name, text in (
+                DESCRIPTIONS | {"probability": "probability of having exceeded the limit"}
+            ).items()
+        }
+        | {
+            "bias": ("duration", found["step_bias"].values, "bias by the time step"),
+            "bias_error": (
+                "duration",
+                found["step_bias_error"].values,
+                "standard error of the bias",
+            ),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(crossing, threads=snakemake.threads), snakemake)
