@@ -4,8 +4,9 @@ import numba
 import numpy as np
 import pytest
 
+from nonsmooth.callbacks import compiled, evaluate
 from nonsmooth.errors import ExpressionError
-from nonsmooth.expressions import compiled, evaluate, parse, vectorised
+from nonsmooth.expressions import parse, vectorised
 from nonsmooth.models import STATE_VARIABLES, x
 
 

@@ -1,7 +1,7 @@
 """Threshold crossing of Brownian motion."""
 
 import numpy as np
-from scipy.special import erfc
+import scipy
 
 _TERMS = np.arange(12)
 _SWITCH = 0.5  # in T/b^2: both series then need at most six terms for 16 digits
@@ -32,5 +32,14 @@ def brownian_crossing(b, T):
         late = 1 - 4 / np.pi * np.sum(
             sign / odd * np.exp(-((odd * np.pi) ** 2) * ratio / 8), axis=-1
         )
-        early = 2 * np.sum(sign * erfc(odd / np.sqrt(2 * ratio)), axis=-1)
+        early = 2 * np.sum(sign * scipy.special.erfc(odd / np.sqrt(2 * ratio)), axis=-1)
     return np.where(ratio[..., 0] > _SWITCH, late, early)
+
+
+def asymptotic_crossing(threshold, horizons, variance, variance_error):
+    """W_star(b / gamma, T) and the error it inherits from gamma^2."""
+    value, below, above = (
+        brownian_crossing(threshold / np.sqrt(variance + shift), horizons)
+        for shift in (0.0, -variance_error, variance_error)
+    )
+    return value, np.maximum(np.abs(above - value), np.abs(value - below)) + 4e-16

@@ -3,8 +3,7 @@
 import math
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.special import erfcx
+import scipy
 
 
 def friction_variance(n, damping=1.0):
@@ -32,7 +31,7 @@ def friction_variance(n, damping=1.0):
 
     def slope_outside(y):
         # a_n(y) = |y| - knot/2, and int_y^inf exp(-C s^2 - 2 s) ds is an erfc
-        return (1 - math.sqrt(math.pi) / root * erfcx(root * y + 1 / root)) / damping
+        return (1 - math.sqrt(math.pi) / root * scipy.special.erfcx(root * y + 1 / root)) / damping
 
     def density_outside(y):
         return math.exp(-damping * y**2 - 2 * y + knot)
@@ -53,7 +52,9 @@ def friction_variance(n, damping=1.0):
         pieces.append((0.0, min(knot, 8.5 / math.sqrt(damping + n)), slope_inside, density_inside))
     for left, right, slope, density in pieces:
         for row, integrand in enumerate((lambda y, s=slope, d=density: s(y) ** 2 * d(y), density)):
-            moments[row] += quad(integrand, left, right, epsabs=0, epsrel=1e-13, limit=200)
+            moments[row] += scipy.integrate.quad(
+                integrand, left, right, epsabs=0, epsrel=1e-13, limit=200
+            )
     (square, square_error), (mass, mass_error) = moments
     value = square / mass
     return value, value * (

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.polynomial import chebyshev
-from scipy.integrate import cumulative_simpson
-from scipy.ndimage import gaussian_filter1d
 
 from nonsmooth import models, spectral
 from nonsmooth.expressions import vectorised
@@ -55,7 +54,7 @@ class PoissonSlope:
             Coefficients, the constant first.
         """
         spacing = 2 * self.reach / (len(self.values) - 1)
-        averaged = gaussian_filter1d(self.values, spread / spacing, mode="nearest")
+        averaged = scipy.ndimage.gaussian_filter1d(self.values, spread / spacing, mode="nearest")
         place = np.linspace(-1, 1, len(self.values))
         weight = np.sqrt(self.density)
         fit = chebyshev.chebfit(place, averaged, DEGREE, w=weight)
@@ -87,6 +86,6 @@ def poisson_slope(scene):
     y = np.linspace(-reach, reach, _POINTS)
     density = np.exp(-depth(y))
     g = vectorised(scene.numerical_observable(), (models.y,))(y) - spectral.mean(scene)
-    left = cumulative_simpson(g * density, x=y, initial=0)
+    left = scipy.integrate.cumulative_simpson(g * density, x=y, initial=0)
     flux = np.where(y < 0, -left, left[-1] - left)
     return PoissonSlope(reach, 2 / scene.noise.sigma**2 * flux / density, density)

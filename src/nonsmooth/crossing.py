@@ -1,11 +1,11 @@
 """Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b)."""
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy import stats
 
 from nonsmooth import schemes
-from nonsmooth.brownian import brownian_crossing
+from nonsmooth.brownian import asymptotic_crossing
 from nonsmooth.errors import SceneError
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
@@ -152,9 +152,9 @@ def proportion(successes, trials, level=0.95):
     estimate, lower, upper : numpy.ndarray
     """
     successes, trials = np.broadcast_arrays(successes, trials)
-    law = stats.beta(successes + 0.5, trials - successes + 0.5)
-    lower = np.where(successes == 0, 0.0, law.ppf((1 - level) / 2))
-    upper = np.where(successes == trials, 1.0, law.isf((1 - level) / 2))
+    a, b = successes + 0.5, trials - successes + 0.5
+    lower = np.where(successes == 0, 0.0, scipy.special.betaincinv(a, b, (1 - level) / 2))
+    upper = np.where(successes == trials, 1.0, scipy.special.betainccinv(a, b, (1 - level) / 2))
     return successes / trials, lower, upper
 
 
@@ -267,18 +267,10 @@ def crossing_estimate(crossed, paths):
     The standard error is that of Jeffreys' beta law, so that it is not 0 where none has crossed.
     """
     probability, lower, upper = proportion(crossed, paths)
+    a, b = crossed + 0.5, paths - crossed + 0.5
     return {
         "probability": probability,
-        "probability_error": stats.beta(crossed + 0.5, paths - crossed + 0.5).std(),
+        "probability_error": np.sqrt(a * b / (a + b + 1)) / (a + b),
         "lower": lower,
         "upper": upper,
     }
-
-
-def asymptotic_crossing(threshold, horizons, variance, variance_error):
-    """W_star(b / gamma, T) and the error it inherits from gamma^2."""
-    value, below, above = (
-        brownian_crossing(threshold / np.sqrt(variance + shift), horizons)
-        for shift in (0.0, -variance_error, variance_error)
-    )
-    return value, np.maximum(np.abs(above - value), np.abs(value - below)) + 4e-16

@@ -10,10 +10,9 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-import scipy.linalg
+import scipy
 import sympy
 from numpy.polynomial import legendre
-from scipy.special import roots_jacobi
 
 from nonsmooth import models
 from nonsmooth.errors import SceneError
@@ -102,7 +101,8 @@ def mesh(scene):
 @lru_cache(maxsize=8)
 def _reference_element(degree):
     """Lagrange basis on the Gauss-Lobatto nodes at over-integrating Gauss points."""
-    inner, _ = roots_jacobi(degree - 1, 1, 1)  # the zeros of the Legendre polynomial's slope
+    # the zeros of the Legendre polynomial's slope
+    inner, _ = scipy.special.roots_jacobi(degree - 1, 1, 1)
     nodes = np.concatenate([[-1.0], inner, [1.0]])
     points, weights = legendre.leggauss(degree + 16)
     to_modes = np.linalg.inv(legendre.legvander(nodes, degree))

@@ -8,8 +8,8 @@ import numpy as np
 import sympy
 
 from nonsmooth import models
+from nonsmooth.callbacks import compiled, evaluate
 from nonsmooth.elementary import fma, like
-from nonsmooth.expressions import compiled, evaluate
 from nonsmooth.kernels import inlined
 from nonsmooth.panel import GAIN, WIDTH, WORK, ZETA, observe
 

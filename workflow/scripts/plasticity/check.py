@@ -4,7 +4,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from nonsmooth import artifact
-from nonsmooth.crossing import asymptotic_crossing
+from nonsmooth.brownian import asymptotic_crossing
 from nonsmooth.errors import CheckError
 from nonsmooth.jobs import produce
 
