@@ -1,4 +1,4 @@
-# The functional central limit theorem for every scene of the sweep: Xi_p against gamma W.
+# The functional central limit theorem for scenes of the sweep: Xi_p against gamma W.
 
 
 rule limit_theorem_samples:
@@ -31,7 +31,7 @@ rule check_limit_theorem:
         samples=expand(
             "{results}/limit_theorem/samples/{scene}.nc",
             results=RESULTS,
-            scene=config["sweep"]["scenes"],
+            scene=config["limit_theorem"]["scenes"],
         ),
         limit=rules.sweep_limit.output[0],
         modules=sources("workflow/scripts/limit_theorem/check.py"),
@@ -45,7 +45,7 @@ rule check_limit_theorem:
         "../envs/environment.yaml"
     threads: 1
     params:
-        scenes=list(config["sweep"]["scenes"]),
+        scenes=lookup(dpath="limit_theorem/scenes", within=config),
     message:
         "Check that every scene approaches the limit of the central limit theorem"
     script:

@@ -23,7 +23,7 @@ def distances(check, scenes):
     check : xarray.Dataset
         Distances with their errors over (scene, p).
     scenes : dict
-        Name -> the scene's parameters.
+        Name -> the scene's parameters, of these scenes and of others.
 
     Returns
     -------
@@ -40,8 +40,8 @@ def distances(check, scenes):
     )
     p, floor = check["p"].values, float(check["floor"])
     lowest = floor / 5
-    for name, parameters in scenes.items():
-        scene, run = Scene(**parameters["scene"]), check.sel(scene=name)
+    for name in check["scene"].values:
+        scene, run = Scene(**scenes[name]["scene"]), check.sel(scene=name)
         panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
         for quantity, (color, marker, dashes, factor, text) in LOOKS.items():
             distance, error = run[quantity].values, run[f"{quantity}_error"].values
@@ -68,6 +68,7 @@ def distances(check, scenes):
             zorder=1,
             label=r"$\propto p^{-1/2}$",
         )
+    legend = panel.get_legend_handles_labels()
     for row, model in zip(axes, rows, strict=True):
         row[0].set_ylabel(f"{MODELS[model].title.lower()}\ndistance")
     for panel, noise in zip(axes[0], columns, strict=True):
@@ -75,7 +76,7 @@ def distances(check, scenes):
     for panel in axes[-1]:
         panel.set_xlabel("$p$")
     axes[0, 0].set(xscale="log", yscale="log", ylim=(lowest, 1.5))
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    figure.legend(*legend, loc="outside upper center", ncols=4)
     return figure
 
 
