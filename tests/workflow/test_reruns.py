@@ -35,8 +35,6 @@ def test_a_new_n_is_solved_alone(finished):
         "convergence_spectral": 1,
         "convergence_finite_difference": 1,
         "table_4": 1,
-        "errata": 1,
-        "table_errata": 1,
         "values": 1,
         "paper": 1,
     }
@@ -75,6 +73,8 @@ def test_a_module_reruns_exactly_the_rules_that_use_it(finished):
         "check_variance": 1,
         "figure_2a": 1,
         "table_4": 1,
+        "errata": 1,
+        "table_errata": 1,
         "values": 1,
         "paper": 1,
     }
