@@ -10,46 +10,59 @@ from nonsmooth.closed_form import friction_variance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.growth import growth, growth_bias, integrals
+from nonsmooth.refinement import growth_to
 from nonsmooth.streams import labelled
 from nonsmooth.trajectories import PILOT_PATHS
 
 _DEGREES = (8, 12, 16, 20, 24)
-_EXACT, _SAMPLED, _LEAST_SAMPLED = 1e-10, 1e-2, 1e-3  # tolerances: unless given, and the least
+_EXACT = {1: 1e-10, 2: 1e-6, 3: 2e-4, 4: 1e-2}  # tolerances by the number of state variables
+_SAMPLED, _LEAST_SAMPLED = 1e-2, 1e-3  # tolerances of Monte Carlo: unless given, and the least
 _TIMES = (10.0, 60.0, 110.0)  # between which Monte Carlo takes the slope, unless it changes
 _DOUBLINGS = 7
 _STEP = 0.02  # times the smaller of 1 and 1/C_b
 
 
-def asymptotic_variance(scene, tol=None, seed=0, threads=None):
+def asymptotic_variance(scene, tol=None, method="deterministic", seed=0, threads=None):
     """gamma_g^2 of Theorem thm3: the growth rate of the variance of int_0^t g.
 
     Parameters
     ----------
     scene : Scene
     tol : float, optional
-        Requested relative error; 1e-10 for the state y with white noise, 1e-2 by Monte Carlo
-        unless given.
-    seed : int or tuple
-        Of Monte Carlo.
-    threads : int, optional
-        All cores unless given.
+        Requested relative error; unless given, 1e-10, 1e-6, 2e-4, 1e-2 for one to four state
+        variables, and 1e-2 by Monte Carlo.
+    method : {"deterministic", "monte_carlo"}
+    seed, threads
+        Of Monte Carlo: int or tuple; all cores unless given.
 
     Returns
     -------
     Estimate
-        By closed form for dry friction and g = y, by spectral elements for the other scenes with
-        the state y and white noise, otherwise by Monte Carlo, whose error is the bias of the
-        time step and the standard error together.
+        By closed form for dry friction and g = y, by spectral elements in every other scene. By
+        Monte Carlo the error is the bias of the time step and the standard error together.
 
     Raises
     ------
+    SceneError
+        If there is no such method.
     ToleranceError
         If `tol` cannot be met; the message has the best value and its error.
     """
     began = time.perf_counter()
-    if not spectral.applies(scene):
+    if method == "monte_carlo":
         return _by_monte_carlo(scene, _SAMPLED if tol is None else tol, seed, threads, began)
-    tol = _EXACT if tol is None else tol
+    if method != "deterministic":
+        raise SceneError(
+            f"gamma^2 has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
+        )
+    tol = _EXACT[len(scene.state)] if tol is None else tol
+    value, error, name = _deterministic(scene, tol)
+    return Estimate(value, error, name, time.perf_counter() - began)
+
+
+def _deterministic(scene, tol):
+    if not spectral.applies(scene):
+        return *growth_to(scene, tol), "spectral elements"
     if (
         scene.mechanics.velocity_penalty != 0
         and scene.observable_expression == models.y
@@ -65,7 +78,7 @@ def asymptotic_variance(scene, tol=None, seed=0, threads=None):
         )
         value, error, method = float(value[0]), float(error[0]), "spectral elements"
     _require(error <= tol * abs(value), value, error, tol)
-    return Estimate(value, error, method, time.perf_counter() - began)
+    return value, error, method
 
 
 def stationary_mean(scene, seed=0, threads=None):
@@ -114,9 +127,8 @@ def _settled_growth(scene, step, paths, seed, threads):
 def _by_monte_carlo(scene, tol, seed, threads, began):
     if not tol >= _LEAST_SAMPLED:
         raise ToleranceError(
-            f"no deterministic solver for the state ({', '.join(scene.state)}) with "
-            f"{scene.noise.title}, and Monte Carlo cannot reach tol = {tol:g}; "
-            f"use tol >= {_LEAST_SAMPLED:g}"
+            f"Monte Carlo cannot reach tol = {tol:g} for gamma^2; use tol >= {_LEAST_SAMPLED:g} "
+            "or method='deterministic'"
         )
     paths = int(np.ceil(10 / tol**2))  # two standard errors are tol
     fewer = max(PILOT_PATHS, paths // 16)

@@ -1,0 +1,186 @@
+"""Spectral elements in one variable: nodal polynomials between edges, with their derivatives.
+
+A variable that noise drives gets continuous elements, on which the second derivative is the weak
+one. A variable that is only transported gets discontinuous elements; what happens on a face is
+decided by the sign of the drift there (upwinding), so their jumps are kept apart.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.polynomial import legendre
+from scipy.special import roots_jacobi
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Nodes of one variable and what acts on functions of it.
+
+    Attributes
+    ----------
+    edges : numpy.ndarray, shape (e + 1,)
+        Of the elements.
+    local : numpy.ndarray, shape (d + 1,)
+        Nodes of an element, mapped to [-1, 1].
+    nodes, weights : numpy.ndarray, shape (k,)
+        Increasing nodes and the quadrature weights that belong to them.
+    slope : scipy.sparse.csr_array, shape (k, k)
+        First derivative: within the elements, averaged at the edges of continuous ones.
+    curvature : scipy.sparse.csr_array, shape (k, k), or None
+        Weak second derivative with zero slope at both ends; None on discontinuous elements.
+    faces : numpy.ndarray, shape (f,)
+        Where functions may jump.
+    jump : scipy.sparse.csr_array, shape (f, k)
+        Value right of each face minus the value left of it.
+    lift_left, lift_right : scipy.sparse.csr_array, shape (k, f)
+        What a unit jump adds to the derivative in the element left of the face, if that element
+        takes its value from the right; and in the element right of it, if from the left.
+    """
+
+    edges: np.ndarray
+    local: np.ndarray
+    nodes: np.ndarray
+    weights: np.ndarray
+    slope: sp.csr_array
+    curvature: sp.csr_array | None
+    faces: np.ndarray
+    jump: sp.csr_array
+    lift_left: sp.csr_array
+    lift_right: sp.csr_array
+
+    def interpolation(self, points):
+        """Matrix that takes nodal values to values at points, 0 outside.
+
+        Parameters
+        ----------
+        points : array_like, shape (q,)
+
+        Returns
+        -------
+        scipy.sparse.csr_array, shape (q, k)
+        """
+        points = np.atleast_1d(np.asarray(points, dtype=float))
+        inside = np.flatnonzero((points >= self.edges[0]) & (points <= self.edges[-1]))
+        element = np.clip(
+            np.searchsorted(self.edges, points[inside], "right") - 1, 0, len(self.edges) - 2
+        )
+        left, right = self.edges[element], self.edges[element + 1]
+        values, _ = lagrange(self.local, (2 * points[inside] - left - right) / (right - left))
+        width = len(self.local)
+        # neighbouring continuous elements share a node
+        stride = (len(self.nodes) - width) // max(len(self.edges) - 2, 1)
+        columns = (element * stride)[:, None] + np.arange(width)
+        rows = np.repeat(inside, width)
+        return sp.csr_array(
+            (values.ravel(), (rows, columns.ravel())), shape=(len(points), len(self.nodes))
+        )
+
+
+@lru_cache(maxsize=64)
+def lobatto(degree):
+    """Gauss-Lobatto nodes, weights and the derivative matrix on [-1, 1]."""
+    inner, _ = roots_jacobi(degree - 1, 1, 1)  # the zeros of the Legendre polynomial's slope
+    nodes = np.concatenate([[-1.0], inner, [1.0]])
+    last = legendre.legval(nodes, [0] * degree + [1])
+    return nodes, 2 / (degree * (degree + 1) * last**2), lagrange(nodes, nodes)[1]
+
+
+def lagrange(nodes, points):
+    """Values and slopes at `points` of the polynomials that are 1 at one node, 0 at the others.
+
+    Parameters
+    ----------
+    nodes : numpy.ndarray, shape (k,)
+    points : numpy.ndarray, shape (q,)
+        Both in [-1, 1].
+
+    Returns
+    -------
+    values, slopes : numpy.ndarray, shape (q, k)
+    """
+    degree = len(nodes) - 1
+    modes = np.linalg.inv(legendre.legvander(nodes, degree))
+    values = legendre.legvander(points, degree) @ modes
+    return values, legendre.legval(points, legendre.legder(modes)).T
+
+
+def continuous(edges, degree):
+    """Make continuous elements with Gauss-Lobatto nodes (lumped mass matrix).
+
+    Parameters
+    ----------
+    edges : numpy.ndarray, shape (e + 1,)
+    degree : int
+        At least 2.
+
+    Returns
+    -------
+    Axis
+        With e * degree + 1 nodes and no faces.
+    """
+    points, quadrature, derivative = lobatto(degree)
+    half, middle = np.diff(edges) / 2, (edges[1:] + edges[:-1]) / 2
+    size = len(half) * degree + 1
+    nodes, weights = np.empty(size), np.zeros(size)
+    first, second = np.zeros((2, size, size))
+    for e in range(len(half)):
+        here = slice(e * degree, (e + 1) * degree + 1)
+        nodes[here] = middle[e] + half[e] * points
+        weights[here] += half[e] * quadrature
+        first[here, here] += quadrature[:, None] * derivative
+        second[here, here] -= derivative.T @ (quadrature[:, None] * derivative) / half[e]
+    none = sp.csr_array((0, size))
+    return Axis(
+        edges,
+        points,
+        nodes,
+        weights,
+        sp.csr_array(first / weights[:, None]),
+        sp.csr_array(second / weights[:, None]),
+        np.empty(0),
+        none,
+        none.T.tocsr(),
+        none.T.tocsr(),
+    )
+
+
+def discontinuous(edges, degree):
+    """Make discontinuous elements with Gauss nodes, exact for drifts linear in each element.
+
+    Parameters
+    ----------
+    edges : numpy.ndarray, shape (e + 1,)
+    degree : int
+
+    Returns
+    -------
+    Axis
+        With e * (degree + 1) nodes and e - 1 faces.
+    """
+    points, quadrature = legendre.leggauss(degree + 1)
+    derivative = lagrange(points, points)[1]
+    left, right = lagrange(points, np.array([-1.0, 1.0]))[0]
+    half, middle = np.diff(edges) / 2, (edges[1:] + edges[:-1]) / 2
+    count, width = len(half), degree + 1
+    jump = np.zeros((count - 1, count * width))
+    lift_left, lift_right = np.zeros((2, count * width, count - 1))
+    for f in range(count - 1):
+        before = slice(f * width, (f + 1) * width)
+        after = slice((f + 1) * width, (f + 2) * width)
+        jump[f, before], jump[f, after] = -right, left
+        lift_left[before, f] = right / (quadrature * half[f])
+        lift_right[after, f] = left / (quadrature * half[f + 1])
+    return Axis(
+        edges,
+        points,
+        (middle[:, None] + half[:, None] * points).ravel(),
+        (half[:, None] * quadrature).ravel(),
+        sp.csr_array(sp.block_diag([derivative / h for h in half])),
+        None,
+        edges[1:-1],
+        sp.csr_array(jump),
+        sp.csr_array(lift_left),
+        sp.csr_array(lift_right),
+    )

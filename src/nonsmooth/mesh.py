@@ -1,0 +1,221 @@
+"""Where the elements of a scene's variables end: on the kinks, graded towards them, in a box."""
+
+import math
+
+import numpy as np
+
+from nonsmooth.elements import continuous, discontinuous
+from nonsmooth.expressions import vectorised
+from nonsmooth.models import eta, x, y, zeta
+
+ORDER = (
+    eta,
+    zeta,
+    y,
+    x,
+)  # of the axes: the forcing first, for each value of which mechanics is solved
+_INWARD = 4.0  # each element next to a kink is so many times smaller than its neighbour
+_WIDEST = 2.2  # no element is wider than the half width divided by this
+_DRIVEN, _TRANSPORTED = (
+    3,
+    4,
+)  # elements of a variable without kinks, so that nodes are even in number
+
+
+def variables(scene):
+    """Return the symbols of the scene's state in the order of the axes."""
+    return tuple(symbol for symbol in ORDER if symbol.name in scene.state)
+
+
+def box(scene, depth):
+    """Half widths of a box that holds the invariant density, possibly with much to spare.
+
+    From the noise's own density, and for the oscillator from the energy that the noise can feed
+    into a damped linear one.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    depth : float
+        Outside, the density is of the order exp(-depth) of its maximum.
+
+    Returns
+    -------
+    dict
+        Maps the symbols of the state to half widths, "1".
+    """
+    ends, noise = {}, scene.noise
+    if noise.kind == "white":
+        power = noise.sigma**2
+    else:
+        ends = _noise_box(noise, depth)
+        # a spectral density of at most 2 var(eta) / (relaxation rate), taken as 2 widths^2 / depth
+        power = 4 * ends[eta] ** 2 / depth
+    speed = math.sqrt(power * depth / scene.damping)
+    if eta in ends:
+        speed = min(speed, 2 * ends[eta] / scene.damping)
+    ends[y] = speed
+    if "x" in scene.state:
+        ends[x] = _reach(scene, speed, ends.get(eta, 0.0))
+    return ends
+
+
+def narrowed(scene, ends, found):
+    """Replace half widths of the oscillator's variables by what a solution has shown.
+
+    Parameters
+    ----------
+    scene : Scene
+    ends : dict
+        Half widths of all variables, as from `box`.
+    found : dict
+        Better half widths of `y` and `x`. That of a displacement between walls is not used: it
+        follows from the velocity's.
+    """
+    ends = ends | {y: found[y]}
+    if x in ends:
+        walls = scene.mechanics.argument == x
+        ends[x] = _reach(scene, found[y], ends.get(eta, 0.0)) if walls else found[x]
+    return ends
+
+
+def _noise_box(noise, depth):
+    reach = np.linspace(0, 60, 24001)[1:]
+    if noise.kind == "langevin":
+        v = vectorised(noise.potential_expression, (eta,))
+        allowed = depth * noise.sigma**2 / 2
+        both = np.minimum(v(reach), v(-reach)) - min(v(reach).min(), v(-reach).min(), v(0.0))
+        return {eta: _last_below(reach, both, allowed)}
+    energy = vectorised(noise.energy, (eta, zeta))
+    angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    rays = reach[::20, None] * np.cos(angle), reach[::20, None] * np.sin(angle)
+    H = energy(*rays)
+    near = np.hypot(*rays) < 3
+    weakest = max(np.min(vectorised(noise.dissipation, (eta, zeta))(*rays)[near]), 1e-2)
+    inside = H - H.min() <= depth * noise.sigma**2 / (2 * weakest)
+    return {
+        eta: 1.02 * float(np.max(np.abs(rays[0])[inside], initial=0.1)),
+        zeta: 1.02 * float(np.max(np.abs(rays[1])[inside], initial=0.1)),
+    }
+
+
+def _last_below(reach, values, allowed):
+    below = np.flatnonzero(values <= allowed)
+    return float(reach[below[-1]]) if len(below) else float(reach[0])
+
+
+def _reach(scene, speed, forcing):
+    """Half width of the displacement, given those of the velocity and of the forcing."""
+    if scene.mechanics.displacement_penalty != 0:  # inward drift beyond, for every velocity
+        return 1 + 1.02 * speed / scene.n
+    if scene.mechanics.in_potential:
+        return 1 + speed / math.sqrt(scene.n) + forcing / scene.n
+    # friction with a restoring force: the potential energy is that of the fastest velocity
+    reach = np.geomspace(1e-3, 1e4, 4001)
+    U = vectorised(scene.potential_expression, (x,))
+    height = np.minimum(U(reach), U(-reach)) - min(U(reach).min(), U(-reach).min())
+    return _last_below(reach, height, speed**2 / 2 + forcing)
+
+
+def knots(scene):
+    """Positive values at which a variable's coefficients, or the dynamics, have a kink."""
+    knot, inner, _ = scene.mechanics.penalty.at(scene.n)
+    found = {scene.mechanics.argument: knot}
+    if scene.mechanics.velocity_penalty == 0:
+        found[y] = 0.0  # where the displacement turns back at a wall
+    elif "eta" in scene.state and "x" not in scene.state:
+        found[eta] = knot * (inner + scene.damping)  # the forcing that overcomes friction
+    return found
+
+
+def _is_smooth(scene, symbol, end):
+    return knots(scene).get(symbol, end) >= end
+
+
+def edges(scene, symbol, end, layers):
+    """Edges of the elements of one variable, symmetric about 0.
+
+    Parameters
+    ----------
+    scene : Scene
+    symbol : sympy.Symbol
+    end : float
+        Half width.
+    layers : int
+        Number of ever smaller elements towards a kink.
+
+    Returns
+    -------
+    numpy.ndarray
+    """
+    if _is_smooth(scene, symbol, end):
+        count = _DRIVEN if symbol == scene.noise.driven else _TRANSPORTED
+        return np.linspace(-end, end, count + 1)
+    knot = knots(scene)[symbol]
+    if knot == 0:
+        outward = end * 2.5 ** -np.arange(layers + 1.0)
+        return _mirrored(outward)
+    finest = knot * _INWARD**-layers
+    if symbol == y:  # the kink of friction, whose distance from 0 is the finest scale there is
+        finest *= _INWARD**1.5
+    beyond = end - knot
+    # an elastic wall is as deep as the box, however stiff; a layer that only stops is thin
+    outward = _towards(beyond, min(finest, beyond / 8) if scene.mechanics.in_potential else finest)
+    inward = _towards(knot, min(finest, knot / 2)) if symbol != y else np.array([knot / 2, knot])
+    return _mirrored(np.concatenate([knot + outward, knot - inward, [knot]]))
+
+
+def _towards(distance, finest):
+    count = max(1, math.ceil(math.log(distance / finest, _INWARD)))
+    return distance * _INWARD ** -np.arange(float(count))
+
+
+def _mirrored(positive):
+    """Add the origin and the negative half, and split elements that are too wide."""
+    end = positive.max()
+    positive = np.unique(np.append(positive[positive > 1e-14 * end], 0.0))
+    parts = np.ceil(np.diff(positive) * _WIDEST / end).astype(int)
+    pieces = [
+        left + width * np.arange(count) / count
+        for left, width, count in zip(positive, np.diff(positive), parts, strict=False)
+    ]
+    positive = np.append(np.concatenate(pieces), end)
+    return np.unique(np.concatenate([-positive, positive]))
+
+
+def axes(scene, ends, levels, margin=0.0):
+    """Discretise every variable of the state.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    ends : dict
+        Half widths, see `box`.
+    levels : dict
+        Maps symbols to resolution levels, integers >= 0: each raises the polynomial degree and,
+        in turn or each time, the number of layers towards a kink.
+    margin : float
+        Of elements added outside the box, relative to its width, to see whether it is too small.
+
+    Returns
+    -------
+    dict
+        Maps symbols, in the order of the axes, to `Axis`.
+    """
+    made = {}
+    for symbol in variables(scene):
+        level, end = levels[symbol], ends[symbol]
+        # with many variables, layers are dear
+        layers = 2 + (level if len(levels) <= 2 else level // 2)
+        where = edges(scene, symbol, end, layers)
+        if margin:
+            where = np.concatenate([[-end * (1 + margin)], where, [end * (1 + margin)]])
+        if symbol == scene.noise.driven:
+            # odd degrees where there is no kink keep the number of nodes even
+            stride = 2 if _is_smooth(scene, symbol, end) else 1
+            made[symbol] = continuous(where, 3 + stride * level)
+        else:
+            made[symbol] = discontinuous(where, 2 + level)
+    return made

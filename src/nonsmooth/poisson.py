@@ -1,0 +1,294 @@
+"""The Poisson equation -A u = f - E f (eq. poisson) on a tensor grid, solved by linear algebra.
+
+Up to two variables, by one sparse factorisation. Beyond, the generator is the sum of the noise's
+own generator L and of the transport T by the oscillator's drift, which does not mix values of the
+noise: (a - T)^-1 (a - L)^-1, one step of alternating directions, preconditions GMRES.
+
+Where drift and observable are odd, solutions are odd or even in the state, and half of the grid
+is enough.
+"""
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from nonsmooth.errors import ToleranceError
+from nonsmooth.generator import assemble
+
+ODD, EVEN = -1, 1
+_KRYLOV = 150  # vectors kept by GMRES
+_RESTARTS = 4
+
+
+def factorise(matrix):
+    """Sparse LU of a matrix whose pattern is symmetric and whose diagonal is not small."""
+    return spla.splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=1e-3,
+        options={"SymmetricMode": True},
+    )
+
+
+class _Factors:
+    """Sparse LU with one step of iterative refinement, which mends its weak pivoting."""
+
+    def __init__(self, matrix):
+        self.matrix = matrix
+        self.lu = factorise(matrix)
+
+    def solve(self, right, trans="N"):
+        matrix = self.matrix.T if trans == "T" else self.matrix
+        solution = self.lu.solve(right, trans=trans)
+        return solution + self.lu.solve(right - matrix @ solution, trans=trans)
+
+
+class Direct:
+    """Solver by sparse factorisation.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    axes : dict
+        See `mesh.axes`.
+    mirrored : bool
+        Whether to use that drift and observable are odd.
+    """
+
+    def __init__(self, scene, axes, mirrored):
+        self.generator = assemble(scene, axes)
+        self.size = self.generator.shape[0]
+        self.mirrored = mirrored
+        self._factors = {}
+
+    def unfold(self, half, parity):
+        """Continue a function from half of the grid to all of it."""
+        return np.concatenate([half, parity * half[::-1]]) if self.mirrored else half
+
+    def fold(self, whole):
+        """Restrict a function to the half of the grid that is solved on."""
+        return whole[: self.size // 2] if self.mirrored else whole
+
+    def matrix(self, parity):
+        """Return the generator on odd or even functions."""
+        if not self.mirrored:
+            return self.generator
+        half = self.size // 2
+        return (
+            self.generator[:half, :half] + parity * self.generator[:half, half:][:, ::-1]
+        ).tocsr()
+
+    def _factor(self, parity):
+        # constants are in the kernel of A, and are not odd
+        if parity not in self._factors:
+            matrix = -self.matrix(parity)
+            if parity == EVEN or not self.mirrored:
+                ones = np.ones((matrix.shape[0], 1))
+                matrix = sp.block_array([[matrix, ones], [ones.T / len(ones), None]])
+            self._factors[parity] = _Factors(matrix)
+        return self._factors[parity]
+
+    def solve(self, values, parity, _accuracy=None):
+        """Solve -A u = f - E f.
+
+        Parameters
+        ----------
+        values : numpy.ndarray
+            f on the (half) grid.
+        parity : {ODD, EVEN}
+            Of f; ignored unless mirrored.
+
+        Returns
+        -------
+        u : numpy.ndarray
+        mean : float
+        """
+        if self.mirrored and parity == ODD:
+            return self._factor(ODD).solve(values), 0.0
+        solution = self._factor(EVEN).solve(np.append(values, 0.0))
+        return solution[:-1], float(solution[-1])
+
+    def stationary(self, _accuracy=None):
+        """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
+        one = np.zeros(self.fold(np.empty(self.size)).size + 1)
+        one[-1] = 1.0
+        masses = self.unfold(self._factor(EVEN).solve(one, trans="T")[:-1], EVEN)
+        return masses / masses.sum()
+
+
+class Split:
+    """Solver by alternating directions and GMRES, for scenes with colored noise.
+
+    Functions are arrays of the shape (forcing eta, oscillator, zeta).
+
+    Parameters
+    ----------
+    scene, axes, mirrored
+        As for `Direct`.
+    shift : float
+        The number a of the preconditioner, a rate between those of L and of T.
+    """
+
+    def __init__(self, scene, axes, mirrored, shift):
+        noise = {symbol: axes[symbol] for symbol in scene.noise.drift}
+        noise = {symbol: axes[symbol] for symbol in axes if symbol in noise}
+        forcing, *own = noise
+        rest = {symbol: axes[symbol] for symbol in axes if symbol not in noise}
+        self.mirrored = mirrored
+        self.forcing = len(axes[forcing].nodes)
+        self.own = int(np.prod([len(axes[symbol].nodes) for symbol in own]))
+        self.mechanics = int(np.prod([len(axis.nodes) for axis in rest.values()]))
+        self.kept = self.forcing // 2 if mirrored else self.forcing
+        self.shape = (self.kept, self.mechanics, self.own)
+
+        L = assemble(scene, noise).toarray()
+        half = L.shape[0] // 2
+        self.noise = (
+            {sign: L[:half, :half] + sign * L[:half, half:][:, ::-1] for sign in (ODD, EVEN)}
+            if mirrored
+            else {ODD: L, EVEN: L}
+        )
+        T = assemble(scene, {forcing: axes[forcing]} | rest, equations=rest)
+        size = self.mechanics
+        self.transport = [
+            T[i * size : (i + 1) * size, i * size : (i + 1) * size].tocsr()
+            for i in range(self.kept)
+        ]
+        self.shift = shift
+        self._resolvents = [factorise(shift * sp.eye_array(size) - t) for t in self.transport]
+        self._noise_factors = {
+            sign: scipy.linalg.lu_factor(shift * np.eye(len(part)) - part)
+            for sign, part in self.noise.items()
+        }
+        # a measure near the origin that a constant is recovered with
+        masses = scipy.linalg.null_space(self.noise[EVEN].T, rcond=1e-9)[:, 0]
+        masses = masses.reshape(self.kept, 1, self.own) / masses.sum()
+        near = _bump(rest)
+        self.measure = (masses * near[None, :, None]).ravel()
+        self.measure /= self.measure.sum()
+
+    def unfold(self, half, parity):
+        """Continue a function from half of the grid to all of it."""
+        values = half.reshape(self.shape)
+        if self.mirrored:
+            values = np.concatenate([values, parity * values[::-1, ::-1, ::-1]])
+        return values.transpose(0, 2, 1).ravel()
+
+    def fold(self, whole):
+        """Restrict a function to the half of the grid that is solved on."""
+        values = whole.reshape(self.forcing, self.own, self.mechanics)
+        return np.ascontiguousarray(values[: self.kept].transpose(0, 2, 1)).ravel()
+
+    def _by_noise(self, values, parity, apply):
+        """Apply an operator on the noise; it conserves the parity in the other variables."""
+        columns = values.transpose(0, 2, 1).reshape(-1, self.mechanics)
+        if not self.mirrored:
+            result = apply(parity, columns)
+        else:
+            even = (columns + columns[:, ::-1]) / 2
+            result = apply(parity, even) + apply(-parity, columns - even)
+        return result.reshape(self.kept, self.own, self.mechanics).transpose(0, 2, 1)
+
+    def generator(self, values, parity, adjoint=False):
+        """Apply A, or its transpose, to a function."""
+        values = values.reshape(self.shape)
+        result = np.stack(
+            [(t.T if adjoint else t) @ part for t, part in zip(self.transport, values, strict=True)]
+        )
+        noise = {sign: part.T for sign, part in self.noise.items()} if adjoint else self.noise
+        result += self._by_noise(values, parity, lambda sign, columns: noise[sign] @ columns)
+        return result.ravel()
+
+    def _precondition(self, values, parity, adjoint):
+        """Apply 2 a (a - T)^-1 (a - L)^-1, or its transpose, in the place of -A^-1."""
+
+        def noise(values):
+            return self._by_noise(
+                values,
+                parity,
+                lambda sign, columns: scipy.linalg.lu_solve(
+                    self._noise_factors[sign], columns, trans=int(adjoint)
+                ),
+            )
+
+        def transport(values):
+            return np.stack(
+                [
+                    lu.solve(part, trans="T" if adjoint else "N")
+                    for lu, part in zip(self._resolvents, values, strict=True)
+                ]
+            )
+
+        values = values.reshape(self.shape)
+        values = noise(transport(values)) if adjoint else transport(noise(values))
+        return 2 * self.shift * values.ravel()
+
+    def _gmres(self, right, parity, accuracy, adjoint=False):
+        """Solve (-A + 1 measure') u = f: the measure's integral of u is then the mean of f."""
+        ones, measure = np.ones(right.size), self.measure
+        if adjoint:
+            ones, measure = measure, ones
+        odd = self.mirrored and parity == ODD
+
+        def apply(values):
+            result = -self.generator(values, parity, adjoint)
+            return result if odd else result + ones * (measure @ values)
+
+        self.iterations = 0
+
+        def count(_residual):
+            self.iterations += 1
+
+        shape = (right.size, right.size)
+        solution, failed = spla.gmres(
+            spla.LinearOperator(shape, apply, dtype=float),
+            right,
+            M=spla.LinearOperator(
+                shape, lambda values: self._precondition(values, parity, adjoint), dtype=float
+            ),
+            rtol=accuracy,
+            restart=_KRYLOV,
+            maxiter=_RESTARTS,
+            callback=count,
+            callback_type="pr_norm",
+        )
+        if failed:
+            raise ToleranceError(
+                f"the Poisson equation was not solved to {accuracy:.0e} in "
+                f"{_KRYLOV * _RESTARTS} iterations; loosen tol"
+            )
+        return solution
+
+    def solve(self, values, parity, accuracy):
+        """Solve -A u = f - E f; see `Direct.solve`.
+
+        Parameters
+        ----------
+        accuracy : float
+            Norm of the residual relative to that of f.
+
+        Raises
+        ------
+        ToleranceError
+            If the iteration does not converge.
+        """
+        solution = self._gmres(values, parity, accuracy)
+        if self.mirrored and parity == ODD:
+            return solution, 0.0
+        return solution, float(self.measure @ solution)
+
+    def stationary(self, accuracy):
+        """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
+        masses = self.unfold(self._gmres(self.measure, EVEN, accuracy, adjoint=True), EVEN)
+        return masses / masses.sum()
+
+
+def _bump(rest):
+    """Masses of a narrow measure around the origin of the oscillator's variables."""
+    total = np.ones(1)
+    for axis in rest.values():
+        width = axis.nodes[-1] / 4
+        total = np.kron(total, axis.weights * np.exp(-((axis.nodes / width) ** 2) / 2))
+    return total
