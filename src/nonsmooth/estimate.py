@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from nonsmooth.errors import ToleranceError
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -21,3 +23,18 @@ class Estimate:
     error: float
     method: str
     seconds: float
+
+
+def require(met, value, error, tol):
+    """Raise unless a relative tolerance of gamma^2 has been met.
+
+    Raises
+    ------
+    ToleranceError
+        With the best value and its error.
+    """
+    if not met:
+        raise ToleranceError(
+            f"gamma^2 = {value:.16g} has an error of {error:.1e}, above tol = {tol:g} relative; "
+            "loosen tol"
+        )
