@@ -10,6 +10,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
     submod_attrs={
         "brownian": ["brownian_crossing"],
         "crossing": ["crossing_probability"],
+        "density": ["invariant_density"],
         "errors": ["NonsmoothError"],
         "estimate": ["Estimate"],
         "noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],

@@ -30,6 +30,8 @@ class Axis:
         First derivative: within the elements, averaged at the edges of continuous ones.
     curvature : scipy.sparse.csr_array, shape (k, k), or None
         Weak second derivative with zero slope at both ends; None on discontinuous elements.
+    release : scipy.sparse.csr_array, shape (k, k), or None
+        What is added to `curvature` at an end where the slope is free.
     faces : numpy.ndarray, shape (f,)
         Where functions may jump.
     jump : scipy.sparse.csr_array, shape (f, k)
@@ -45,6 +47,7 @@ class Axis:
     weights: np.ndarray
     slope: sp.csr_array
     curvature: sp.csr_array | None
+    release: sp.csr_array | None
     faces: np.ndarray
     jump: sp.csr_array
     lift_left: sp.csr_array
@@ -131,6 +134,9 @@ def continuous(edges, degree):
         weights[here] += half[e] * quadrature
         first[here, here] += quadrature[:, None] * derivative
         second[here, here] -= derivative.T @ (quadrature[:, None] * derivative) / half[e]
+    release = np.zeros((size, size))
+    release[0, : degree + 1] -= derivative[0] / half[0]
+    release[-1, -degree - 1 :] += derivative[-1] / half[-1]
     none = sp.csr_array((0, size))
     return Axis(
         edges,
@@ -139,6 +145,7 @@ def continuous(edges, degree):
         weights,
         sp.csr_array(first / weights[:, None]),
         sp.csr_array(second / weights[:, None]),
+        sp.csr_array(release / weights[:, None]),
         np.empty(0),
         none,
         none.T.tocsr(),
@@ -178,6 +185,7 @@ def discontinuous(edges, degree):
         (middle[:, None] + half[:, None] * points).ravel(),
         (half[:, None] * quadrature).ravel(),
         sp.csr_array(sp.block_diag([derivative / h for h in half])),
+        None,
         None,
         edges[1:-1],
         sp.csr_array(jump),

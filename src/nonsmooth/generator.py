@@ -61,17 +61,21 @@ def assemble(scene, axes, equations=None):
         def spread(matrix, place=place):
             return _kron(size[:place], matrix, size[place + 1 :])
 
-        generator += sp.diags_array(evaluate(rate, axes)) @ spread(axis.slope)
+        speed = evaluate(rate, axes)
+        generator += sp.diags_array(speed) @ spread(axis.slope)
         if symbol == scene.noise.driven:
-            generator += scene.noise.sigma**2 / 2 * spread(axis.curvature)
+            # where the drift leads inward, a condition at the end would make a layer there
+            inward = (speed * evaluate(symbol, axes) < 0).astype(float)
+            diffusion = spread(axis.curvature) + sp.diags_array(inward) @ spread(axis.release)
+            generator += scene.noise.sigma**2 / 2 * diffusion
         if len(axis.faces):
             across = evaluate(rate, axes, {symbol: axis.faces})
             jump = spread(axis.jump)
-            for lift, speed in (
+            for lift, side in (
                 (axis.lift_left, np.maximum(across, 0)),
                 (axis.lift_right, np.minimum(across, 0)),
             ):
-                generator += spread(lift) @ (sp.diags_array(speed) @ jump)
+                generator += spread(lift) @ (sp.diags_array(side) @ jump)
     return generator.tocsr()
 
 

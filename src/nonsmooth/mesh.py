@@ -109,13 +109,14 @@ def _reach(scene, speed, forcing):
     """Half width of the displacement, given those of the velocity and of the forcing."""
     if scene.mechanics.displacement_penalty != 0:  # inward drift beyond, for every velocity
         return 1 + 1.02 * speed / scene.n
-    if scene.mechanics.in_potential:
-        return 1 + speed / math.sqrt(scene.n) + forcing / scene.n
-    # friction with a restoring force: the potential energy is that of the fastest velocity
+    # the potential energy is that of the fastest velocity
     reach = np.geomspace(1e-3, 1e4, 4001)
     U = vectorised(scene.potential_expression, (x,))
     height = np.minimum(U(reach), U(-reach)) - min(U(reach).min(), U(-reach).min())
-    return _last_below(reach, height, speed**2 / 2 + forcing)
+    free = _last_below(reach, height, speed**2 / 2 + forcing)
+    if scene.mechanics.in_potential:
+        return min(free, 1 + speed / math.sqrt(scene.n) + forcing / scene.n)
+    return free
 
 
 def knots(scene):

@@ -173,7 +173,7 @@ def _refined(scene, tol):
     coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE)
     base = growth_rate(scene, coarse, accuracy)
     many = len(coarse.levels) > 2
-    share = tol / (2 if many else 1) / len(coarse.levels)
+    share = tol / (4 if many else 1) / len(coarse.levels)
     grid, changes, expected = coarse, {}, base
     for symbol in coarse.levels:
         trial, last = coarse, base
@@ -189,23 +189,31 @@ def _refined(scene, tol):
         expected += previous - base
     while not affordable(scene, grid):
         grid = raised(grid, -1)
-    below = raised(grid, -1)
-    last = growth_rate(scene, below, accuracy)
-    truncation = abs(growth_rate(scene, replace(below, margin=_MARGIN), accuracy) - last)
     apart = sum(abs(change) for change in changes.values())
-    rest = 2 * truncation + accuracy * abs(last)
+    below = raised(grid, -1)
+
+    def truncation(where, value):
+        larger = replace(where, margin=_MARGIN)
+        return 2 * abs(growth_rate(scene, larger, accuracy) - value) + accuracy * abs(value)
+
     if many:
-        # a second grid is dear: what the variables change together is taken from their sum
+        # a second grid is dear: twice what single variables still change, and an eighth
+        # of what they did together beyond the sum of what they did alone
+        rest = truncation(below, growth_rate(scene, below, accuracy))
         last = growth_rate(scene, grid, accuracy)
-        error = apart + abs(last - expected) / 4 + rest
+        error = 2 * apart + abs(last - expected) / 8 + rest
         if error <= tol * abs(last):
-            return last + sum(changes.values()), error, below
+            return last, error, below
         below, grid = grid, raised(grid)
+    else:
+        last = growth_rate(scene, below, accuracy)
     while affordable(scene, grid):
         previous, last = last, growth_rate(scene, grid, accuracy)
-        error = max(abs(last - previous), apart) + rest
+        error = max(abs(last - previous), apart)
         if error <= tol * abs(last):
-            break
+            error += truncation(grid, last)
+            if error <= tol * abs(last):
+                break
         below, grid = grid, raised(grid)
     require(error <= tol * abs(last), last, error, tol)
     return last, error, below

@@ -5,7 +5,7 @@ FIGURES = [
     *["figure_8", "figure_9"],
 ]
 TABLES = [
-    *["table_1", "table_2", "table_3", "table_4", "table_6", "table_7"],
+    *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
     *["table_errata", "table_time_step"],
 ]
 

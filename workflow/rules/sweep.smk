@@ -63,6 +63,7 @@ rule sweep_limit:
             results=RESULTS,
             scene=config["sweep"]["scenes"],
         ),
+        solved=rules.table_5.input.solved,
         modules=sources("workflow/scripts/sweep/limit.py"),
     output:
         ensure(f"{RESULTS}/sweep/limit.nc", non_empty=True),
@@ -75,6 +76,7 @@ rule sweep_limit:
     threads: 1
     params:
         scenes=lookup(dpath="sweep/scenes", within=config),
+        names=lookup(dpath="growth/scenes", within=config),
         horizon=lookup(dpath="sweep/horizon", within=config),
         outputs=lookup(dpath="sweep/outputs", within=config),
     message:

@@ -245,9 +245,10 @@ def _example(section):
             f"ground = ns.KanaiTajimi({ground})",
             'scene = ns.Scene("elasto_plastic", ground, observable="plastic_strain_rate",',
             f"                 {oscillator})",
-            f"gamma2 = ns.asymptotic_variance(scene, tol={section['tolerance']:g}).value",
+            f"found = ns.asymptotic_variance(scene, tol={section['tolerance']:g}, "
+            'method="monte_carlo")',
             f"limit, duration = {limit:g}, {section['duration']:g}",
-            "ns.brownian_crossing(limit / gamma2**0.5, duration)",
+            "ns.brownian_crossing(limit / found.value**0.5, duration)",
         ]
     )
 

@@ -16,7 +16,9 @@ def variance(ground, oscillator, tolerance, seed, threads):
     xarray.Dataset
     """
     scene = yielding_oscillator(ground, oscillator)
-    found = asymptotic_variance(scene, tolerance, seed=(seed, "plasticity"), threads=threads)
+    found = asymptotic_variance(
+        scene, tolerance, method="monte_carlo", seed=(seed, "plasticity"), threads=threads
+    )
     return artifact.dataset(
         "Growth rate of the variance of the permanent deformation",
         f"{scene}, {found.method}",

@@ -1,4 +1,4 @@
-"""The asymptotic crossing formula of every scene, from its Monte Carlo gamma^2."""
+"""The asymptotic crossing formula of every scene, from its gamma^2."""
 
 import numpy as np
 
@@ -10,15 +10,18 @@ from nonsmooth.jobs import produce
 ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7
 
 
-def limit(variance, scenes, horizon, outputs):
+def limit(variance, solved, scenes, names, horizon, outputs):
     """Evaluate W_star(b / gamma, T) with the error it inherits from gamma^2.
 
     Parameters
     ----------
     variance : list of xarray.Dataset
-        One per scene, in the order of `scenes`.
+        By Monte Carlo, one per scene, in the order of `scenes`.
+    solved : list of xarray.Dataset
+        Without Monte Carlo, for the scenes in `names`; preferred.
     scenes : dict
         Name -> the scene's parameters and its threshold.
+    names : list of str
     horizon, outputs
         Last T and number of equidistant T.
 
@@ -35,6 +38,7 @@ def limit(variance, scenes, horizon, outputs):
     """
     horizons = horizon / outputs * np.arange(1, outputs + 1)
     rates, errors, curves = [], [], []
+    exact = dict(zip(names, solved, strict=True))
     for (name, parameters), run in zip(scenes.items(), variance, strict=True):
         value = {key: float(run[key]) for key in run.data_vars}
         if abs(value["mean"]) > ALLOWED * value["mean_error"]:
@@ -51,6 +55,8 @@ def limit(variance, scenes, horizon, outputs):
                 f"the time step's bias of {name} is above the standard error; reduce sweep.step"
             )
         error = np.linalg.norm([value[k] for k in ("gamma2_error", "bias", "bias_error")])
+        if name in exact:
+            value["gamma2"], error = (float(exact[name][k]) for k in ("gamma2", "gamma2_error"))
         rates.append(value["gamma2"])
         errors.append(error)
         curves.append(asymptotic_crossing(parameters["threshold"], horizons, rates[-1], error))
@@ -58,7 +64,7 @@ def limit(variance, scenes, horizon, outputs):
     over = ("scene", "horizon")
     return artifact.dataset(
         "Limits of the threshold crossing probabilities",
-        "W_star(b / gamma, T) with gamma^2 by Monte Carlo",
+        "W_star(b / gamma, T) with gamma^2 from the Poisson equation, else by Monte Carlo",
         {
             "scene": ("scene", list(scenes), "name of the scene"),
             "horizon": ("horizon", horizons, "T"),
@@ -67,7 +73,11 @@ def limit(variance, scenes, horizon, outputs):
             "probability": (over, probability, "W_star(b / gamma, T)"),
             "probability_error": (over, probability_error, "error inherited from gamma^2"),
             "gamma2": ("scene", rates, "growth rate of the variance of int_0^t g"),
-            "gamma2_error": ("scene", errors, "standard error and bias by the time step"),
+            "gamma2_error": (
+                "scene",
+                errors,
+                "error bound, or standard error and bias by the time step",
+            ),
             "allowed": ((), ALLOWED, "standard errors that a mean of zero may be off"),
         },
     )
