@@ -49,13 +49,14 @@ def check(config):
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
     _check_theorems(config["theorems"])
-    scenes, p = config["limit_theorem"]["scenes"], config["limit_theorem"]["p"]
-    for name in scenes:
-        if name not in config["sweep"]["scenes"]:
-            raise ConfigError(
-                f"config: 'limit_theorem.scenes' has {name!r}, which is not a scene of the sweep; "
-                f"choose from {', '.join(config['sweep']['scenes'])}"
-            )
+    p = config["limit_theorem"]["p"]
+    for topic in ("limit_theorem", "density"):
+        for name in config[topic]["scenes"]:
+            if name not in config["sweep"]["scenes"]:
+                raise ConfigError(
+                    f"config: '{topic}.scenes' has {name!r}, which is not a scene of the sweep; "
+                    f"choose from {', '.join(config['sweep']['scenes'])}"
+                )
     if sorted(set(p)) != p:
         raise ConfigError(f"config: 'limit_theorem.p' = {p} must increase; sort them")
     yielding_oscillator(config["plasticity"]["ground"], config["plasticity"]["oscillator"])
