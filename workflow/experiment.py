@@ -49,7 +49,7 @@ def check(config):
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
     _check_theorems(config["theorems"])
-    for topic in ("growth", "limit_theorem"):
+    for topic in ("growth", "density", "limit_theorem"):
         for name in config[topic]["scenes"]:
             if name not in config["sweep"]["scenes"]:
                 raise ConfigError(

@@ -14,7 +14,7 @@ import nonsmooth as ns
 from nonsmooth import artifact
 
 RESULTS = "results/smoke"
-FIGURES = [f"figure_{name}" for name in ("1", "2a", "2b", "3", "4", "5", "6", "8", "9")]
+FIGURES = [f"figure_{name}" for name in ("1", "2a", "2b", "3", "4", "5", "6", "7", "8", "9")]
 TABLES = [f"table_{name}" for name in ("1", "2", "3", "4", "6", "7", "errata", "time_step")]
 
 

@@ -2,7 +2,7 @@
 
 FIGURES = [
     *["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"],
-    *["figure_8", "figure_9"],
+    *["figure_7", "figure_8", "figure_9"],
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
@@ -58,6 +58,7 @@ rule values:
         trajectories=lookup(dpath="trajectories", within=config),
         scenes=lookup(dpath="sweep", within=config),
         theorems=lookup(dpath="theorems", within=config),
+        density=lookup(dpath="density", within=config),
         limit_theorem=lookup(dpath="limit_theorem", within=config),
         plasticity=lookup(dpath="plasticity", within=config),
         seed=lookup(dpath="seed", within=config),

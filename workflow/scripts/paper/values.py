@@ -37,6 +37,7 @@ def values(
     trajectories,
     scenes,
     theorems,
+    density,
     limit_theorem,
     plasticity,
     seed,
@@ -53,7 +54,7 @@ def values(
         Spectral solutions of table 4, one per n.
     drift_condition, errata : xarray.Dataset
         Table 7 and the table of errata.
-    variance, sweep, trajectories, scenes, theorems, limit_theorem, plasticity : dict
+    variance, sweep, trajectories, scenes, theorems, density, limit_theorem, plasticity : dict
         Sections of the configuration: figure 2a, figure 2b, trajectories, every scene, table 7,
         figure 8, figure 9.
     horizon, scheme
@@ -121,6 +122,12 @@ def values(
             ),
             "allowed": f"{float(limit['allowed']):g}",
             "standard_error": f"{0.5 / scenes['paths'] ** 0.5 + 5e-5:.4f}",
+        },
+        "density": {
+            "paths": f"{density['paths']:,}",
+            "time": f"{density['time']:g}",
+            "step": f"{density['step']:g}",
+            "tolerances": [_scientific(tolerance) for tolerance in density["tolerances"]],
         },
         "limit_theorem": _limit_theorem(theorem, limit_theorem),
         "plasticity": _plasticity(deformation, deformation_variance, plasticity),

@@ -1,0 +1,71 @@
+"""Figure 7: invariant densities of every scene, by solvers and by simulation."""
+
+import matplotlib.pyplot as plt
+
+from nonsmooth.models import MODELS
+from nonsmooth.noises import NOISES
+from nonsmooth.plotting import BLUE, ORANGE, TEXT_WIDTH, draw
+from nonsmooth.scene import Scene
+
+LOOKS = {
+    "y": (BLUE, "o", "-", "velocity $y$"),
+    "x": (ORANGE, "s", "--", "displacement $x$"),
+}
+
+
+def invariant(densities, scenes, names):
+    """Draw one panel per scene, models in rows and noises in columns.
+
+    Parameters
+    ----------
+    densities : list of xarray.Dataset
+    scenes : dict
+        Name -> the scene's parameters, of these scenes and of others.
+    names : list of str
+        Of the scenes, in the order of the densities.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows, columns = list(MODELS), list(NOISES)
+    figure, axes = plt.subplots(
+        len(rows), len(columns), figsize=(TEXT_WIDTH, TEXT_WIDTH), sharey=True, squeeze=False
+    )
+    handles = {}
+    for name, data in zip(names, densities, strict=True):
+        scene = Scene(**scenes[name]["scene"])
+        panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
+        for variable in (v for v in LOOKS if v in data.coords):
+            color, marker, dashes, text = LOOKS[variable]
+            z, line = data[variable].values, data[f"density_{variable}"].values
+            dots = data[f"histogram_{variable}"].values
+            error = data[f"histogram_{variable}_error"].values
+            seen, known = dots > 0, line > data[f"density_{variable}_error"].values
+            (solved,) = panel.plot(z[known], line[known], color=color, linestyle=dashes)
+            sampled = panel.errorbar(
+                z[seen],
+                dots[seen],
+                error[seen],
+                color=color,
+                marker=marker,
+                markersize=2.2,
+                markerfacecolor="white",
+                markeredgewidth=0.6,
+                linestyle="none",
+                elinewidth=0.6,
+            )
+            handles |= {f"{text}, solved": solved, f"{text}, simulated": sampled}
+    for row, model in zip(axes, rows, strict=True):
+        row[0].set_ylabel(f"{MODELS[model].title.lower()}\ndensity")
+    for panel, noise in zip(axes[0], columns, strict=True):
+        panel.set_title(f"{noise} noise", fontsize=8, loc="left")
+    for panel in axes[-1]:
+        panel.set_xlabel("$y$, $x$")
+    axes[0, 0].set(yscale="log", ylim=(2e-4, 60))
+    figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=4)
+    return figure
+
+
+if __name__ == "__main__":
+    draw(invariant, snakemake)
