@@ -15,6 +15,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "estimate": ["Estimate"],
         "noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],
         "scene": ["Scene"],
+        "spectral_gap": ["spectral_gap"],
         "trajectories": ["simulate"],
         "variance": ["asymptotic_variance", "variance"],
     },

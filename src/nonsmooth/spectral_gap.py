@@ -1,0 +1,85 @@
+"""The spectral gap of the generator, the rate at which correlations decay (Theorem thm2)."""
+
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse.linalg as spla
+
+from nonsmooth import refinement, spectral
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.estimate import Estimate
+from nonsmooth.poisson import EVEN, ODD
+
+_WANTED = 6  # eigenvalues computed; the slowest pair may be complex
+_COARSE, _FINEST = 3, 8  # levels
+
+
+def spectral_gap(scene, tol=1e-6):
+    """Smallest real part of the non-zero eigenvalues of -A_n.
+
+    Parameters
+    ----------
+    scene : Scene
+        With one or two state variables and a finite n.
+    tol : float
+        Requested relative error.
+
+    Returns
+    -------
+    Estimate
+        The error is the difference of two grids.
+
+    Raises
+    ------
+    SceneError
+        If the state has more variables, or n is infinite and the state two variables.
+    ToleranceError
+        If `tol` cannot be met; the message has the best value and its error.
+    """
+    began = time.perf_counter()
+    if spectral.applies(scene):
+        solve, levels = _of_polynomials, (8, 12, 16, 20, 24)
+    elif len(scene.state) == 2 and not math.isinf(scene.n):
+        grid = refinement.fitted(scene, math.log(1 / tol) + refinement.SPARE, _COARSE)
+
+        def solve(scene, level):
+            return _on(scene, replace(grid, levels=dict.fromkeys(grid.levels, level)))
+
+        levels = range(_COARSE, _FINEST + 1)
+    else:
+        raise SceneError(
+            f"the spectral gap is computed for one or two state variables and, for two, a finite "
+            f"n, not for ({', '.join(scene.state)}) at n = {scene.n:g}; measure the decay of "
+            "correlations by Monte Carlo"
+        )
+    value = solve(scene, levels[0])
+    for level in levels[1:]:
+        previous, value = value, solve(scene, level)
+        error = abs(value - previous)
+        if error <= tol * value:
+            return Estimate(value, error, "spectral elements", time.perf_counter() - began)
+    raise ToleranceError(
+        f"the spectral gap {value:.10g} has an error of {error:.1e}, above tol = {tol:g} "
+        "relative; loosen tol"
+    )
+
+
+def _of_polynomials(scene, degree):
+    return float(spectral.spectrum(scene, degree).rates[1])
+
+
+def _on(scene, grid):
+    """Invert -A on functions modulo constants, odd and even ones apart."""
+    _, solver = refinement.solver(scene, grid)
+    slowest = []
+    for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
+        size = solver.matrix(parity).shape[0]
+        inverse = spla.LinearOperator(
+            (size, size), lambda values, parity=parity: solver.solve(values, parity)[0], dtype=float
+        )
+        start = np.cos(np.arange(size))  # the same in every run
+        largest = spla.eigs(inverse, k=_WANTED, v0=start, return_eigenvectors=False)
+        slowest.append(np.min((1 / largest[np.abs(largest) > 1e-12]).real))
+    return float(min(slowest))

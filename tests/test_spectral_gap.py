@@ -1,0 +1,47 @@
+"""The spectral gap against linear systems and the decay of correlations."""
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import SceneError
+from nonsmooth.trajectories import paths_at
+
+
+@pytest.mark.parametrize(("damping", "stiffness"), [(1.0, 1.0), (3.0, 1.0), (0.6, 2.0)])
+def test_linear_oscillator(damping, stiffness):
+    """The eigenvalues of an Ornstein-Uhlenbeck process are sums of those of its drift matrix."""
+    scene = ns.Scene(
+        "obstacle", n=1e-9, damping=damping, potential=f"{stiffness}*x**2/2", observable="x"
+    )
+    exact = -np.linalg.eigvals([[-damping, -stiffness], [1.0, 0.0]]).real.max()
+    found = ns.spectral_gap(scene, tol=1e-5)
+    # the error of the last of two grids is below their difference; 1e-8 for the soft walls
+    assert abs(found.value - exact) <= found.error + 1e-8
+
+
+def test_dry_friction_in_the_limit():
+    """lambda_1 = 2.53719 for n = inf (METHODS section 1)."""
+    found = ns.spectral_gap(ns.Scene("friction", n=np.inf))
+    assert found.value == pytest.approx(2.53719, abs=1e-5)
+
+
+def test_correlations_decay_at_the_gap():
+    """The mean of the state forgets where it started at least as fast as the gap says."""
+    scene = ns.Scene(
+        "elasto_plastic", n=20, potential="x**2/2", observable="y", start={"y": 1.5, "x": 0.5}
+    )
+    gap = ns.spectral_gap(scene, tol=1e-4).value
+    times = np.array([2.0, 3.0, 4.0, 5.0])
+    sample = paths_at(scene, times, 0.01, 200_000, 1)[1:, :2]  # y and x
+    size = np.abs(sample.mean(axis=2)).sum(axis=1)
+    noise = 5 * np.sqrt(2 / 200_000)
+    # the slowest mode bounds the decay: |E z_t| <= c e^(-gap t), c from the first time; the
+    # factor e allows for a phase of the complex pair that is small at the first time
+    assert np.all(size <= np.e * (size[0] + noise) * np.exp(-gap * (times - times[0])) + noise)
+
+
+def test_more_variables_are_refused():
+    """One line that says what to do."""
+    with pytest.raises(SceneError, match="Monte Carlo"):
+        ns.spectral_gap(ns.Scene("elasto_plastic", "langevin", potential="x**2/2"))
