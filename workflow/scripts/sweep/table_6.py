@@ -3,7 +3,7 @@
 import pandas as pd
 
 from nonsmooth.scene import Scene
-from nonsmooth.tables import scientific, typeset
+from nonsmooth.tables import typeset
 
 
 def sweep(variance, crossing, limit, scenes, p):
@@ -47,8 +47,6 @@ def sweep(variance, crossing, limit, scenes, p):
                 "state": ", ".join(f"${_symbol(s)}$" for s in scene.state),
                 "$g$": f"${_symbol(scene.observable)}$",
                 "$b$": f"${parameters['threshold']:g}$",
-                r"$\gamma^2$": rf"${gamma2['gamma2']:.4f} \pm {gamma2['gamma2_error']:.4f}$",
-                "bias": scientific(gamma2["bias"], digits=0),
             }
             | {f"$p = {scale:g}$": f"{row[f'W_{scale:g}']:.3f}" for scale in p}
             | {r"$W_\star$": f"{row['W_star']:.3f}"}
