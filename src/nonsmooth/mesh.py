@@ -15,11 +15,15 @@ ORDER = (
     x,
 )  # of the axes: the forcing first, for each value of which mechanics is solved
 _INWARD = 4.0  # each element next to a kink is so many times smaller than its neighbour
+_WITHIN = np.array([0.5, 0.75])  # edges within an elastic wall, relative to its depth
 _WIDEST = 2.2  # no element is wider than the half width divided by this
 _DRIVEN, _TRANSPORTED = (
     3,
     4,
 )  # elements of a variable without kinks, so that nodes are even in number
+_DEPTH = 20.0  # of a usual box, in units of the temperature
+_BEND = 1.0  # by so many temperatures may a potential bend in an element, beyond a parabola
+_SAMPLES, _MOST = 16, 9  # points at which the bend is measured; most parts of an element
 
 
 def variables(scene):
@@ -134,6 +138,10 @@ def _is_smooth(scene, symbol, end):
     return knots(scene).get(symbol, end) >= end
 
 
+def _has_walls(scene, end):
+    return scene.mechanics.argument == x and not _is_smooth(scene, x, end)
+
+
 def edges(scene, symbol, end, layers):
     """Edges of the elements of one variable, symmetric about 0.
 
@@ -161,8 +169,13 @@ def edges(scene, symbol, end, layers):
     if symbol == y:  # the kink of friction, whose distance from 0 is the finest scale there is
         finest *= _INWARD**1.5
     beyond = end - knot
-    # an elastic wall is as deep as the box, however stiff; a layer that only stops is thin
-    outward = _towards(beyond, min(finest, beyond / 8) if scene.mechanics.in_potential else finest)
+    if scene.mechanics.in_potential:
+        # an elastic wall is as deep as the box, however stiff: the motion in it turns through
+        # the plane of y and sqrt(n) x, and the solution is as curved there as it is in y
+        outward = _towards(beyond, min(finest, beyond / 8))
+        outward = np.append(outward, beyond * _WITHIN)
+    else:
+        outward = _towards(beyond, finest)  # a layer that only stops is thin
     inward = _towards(knot, min(finest, knot / 2)) if symbol != y else np.array([knot / 2, knot])
     return _mirrored(np.concatenate([knot + outward, knot - inward, [knot]]))
 
@@ -185,6 +198,43 @@ def _mirrored(positive):
     return np.unique(np.concatenate([-positive, positive]))
 
 
+def _wells(scene, ends):
+    """Potential in which each variable moves, and its temperature; that of the noise is known."""
+    found, noise = {}, scene.noise
+    if noise.kind == "langevin":
+        found[eta] = noise.potential_expression, noise.sigma**2 / 2
+    elif noise.kind == "hamiltonian":
+        for symbol, other in ((eta, zeta), (zeta, eta)):
+            energy = noise.energy.subs(other, 0)
+            reach = np.linspace(-ends[symbol], ends[symbol], 201)
+            found[symbol] = energy, np.ptp(vectorised(energy, (symbol,))(reach)) / _DEPTH
+    if x in ends:
+        found[x] = scene.potential_expression, ends[y] ** 2 / (2 * _DEPTH)
+    return found
+
+
+def _resolved(edges, potential, temperature):
+    """Split elements in which a potential has a barrier or changes its curvature.
+
+    Across a barrier the Poisson solution is an error function, as wide as the potential's fall by
+    the temperature; in a parabola it is as smooth as the observable.
+    """
+    place = np.linspace(0, 1, _SAMPLES + 1)
+    values = potential(edges[:-1, None] + np.diff(edges)[:, None] * place)
+    # curvature times the element's width squared over 8, by how much it bends the potential
+    bend = np.diff(values, 2, axis=1) * _SAMPLES**2 / 8
+    lowest = bend.min(axis=1)
+    excess = np.maximum(bend.max(axis=1) - lowest, -lowest) / temperature
+    excess = np.maximum(excess, excess[::-1])  # rounding must not make the mesh asymmetric
+    parts = np.ceil(np.sqrt(np.clip(excess / _BEND, 1, _MOST**2)) - 1e-6).astype(int)
+    parts += 1 - parts % 2  # an even number of nodes stays even
+    pieces = [
+        left + width * np.arange(count) / count
+        for left, width, count in zip(edges, np.diff(edges), parts, strict=False)
+    ]
+    return np.append(np.concatenate(pieces), edges[-1])
+
+
 def axes(scene, ends, levels, margin=0.0):
     """Discretise every variable of the state.
 
@@ -205,14 +255,19 @@ def axes(scene, ends, levels, margin=0.0):
     dict
         Maps symbols, in the order of the axes, to `Axis`.
     """
-    made = {}
+    made, wells = {}, _wells(scene, ends)
     for symbol in variables(scene):
         level, end = levels[symbol], ends[symbol]
         # with many variables, layers are dear
         layers = 2 + (level if len(levels) <= 2 else level // 2)
         where = edges(scene, symbol, end, layers)
+        if symbol in wells:
+            potential, temperature = wells[symbol]
+            where = _resolved(where, vectorised(potential, (symbol,)), temperature)
         if margin:
-            where = np.concatenate([[-end * (1 + margin)], where, [end * (1 + margin)]])
+            # beyond a wall its own depth counts, not the distance between the walls
+            scale = end - knots(scene)[x] if symbol == x and _has_walls(scene, end) else end
+            where = np.concatenate([[-end - margin * scale], where, [end + margin * scale]])
         if symbol == scene.noise.driven:
             # odd degrees where there is no kink keep the number of nodes even
             stride = 2 if _is_smooth(scene, symbol, end) else 1

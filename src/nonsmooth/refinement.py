@@ -22,8 +22,8 @@ _ACCURACY = 0.02  # residual of the iteration, relative to the tolerance
 SPARE = 10.0  # the density outside the box is exp(-SPARE) smaller than the tolerance
 _NORMAL_TAIL = 3.29  # standard deviations outside which a normal variable has the mass _TAIL
 _TAIL = 1e-3  # mass outside a box, from which the box of the wanted depth is extrapolated
-_COARSE, _FINEST = 1, 9  # levels
-_STIFF = {True: 1e10, False: 1e7}  # n that stands for inf, for elastic walls and otherwise
+_COARSE, _FINEST = {2: 2, 3: 1, 4: 1}, 9  # levels, the coarse one by the number of variables
+_STIFF = {True: 1e12, False: 1e7}  # n that stands for inf, for elastic walls and otherwise
 _LARGEST = {2: 120_000, 3: 600_000, 4: 2_500_000}  # grid points
 
 
@@ -170,7 +170,7 @@ def growth_to(scene, tol):
 def _refined(scene, tol):
     """gamma^2, its error, and a grid somewhat coarser than the last."""
     accuracy = tol * _ACCURACY
-    coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE)
+    coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE[len(scene.state)])
     base = growth_rate(scene, coarse, accuracy)
     many = len(coarse.levels) > 2
     share = tol / (4 if many else 1) / len(coarse.levels)
