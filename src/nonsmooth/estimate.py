@@ -25,7 +25,7 @@ class Estimate:
     seconds: float
 
 
-def require(met, value, error, tol):
+def require(met, value, error, tol, cure="loosen tol"):
     """Raise unless a relative tolerance of gamma^2 has been met.
 
     Raises
@@ -36,5 +36,5 @@ def require(met, value, error, tol):
     if not met:
         raise ToleranceError(
             f"gamma^2 = {value:.16g} has an error of {error:.1e}, above tol = {tol:g} relative; "
-            "loosen tol"
+            f"{cure}"
         )

@@ -40,6 +40,16 @@ class Growth:
         """Whether both halves agree within four standard errors, or to a thousandth."""
         return abs(self.settling) <= max(4 * self.settling_error, 1e-3 * abs(self.rate))
 
+    def agrees(self, other):
+        """Whether the slopes of two samples agree within four standard errors, or a thousandth."""
+        return all(
+            abs(ours - theirs) <= max(4 * float(np.hypot(error, other_error)), 1e-3 * abs(ours))
+            for ours, error, theirs, other_error in (
+                (self.rate, self.rate_error, other.rate, other.rate_error),
+                (self.mean, self.mean_error, other.mean, other.mean_error),
+            )
+        )
+
 
 def integrals(
     scene, times, step, paths, seed, first_path=0, threads=None, precision="float32", control=True

@@ -75,12 +75,14 @@ def narrowed(scene, ends, found):
         Half widths of all variables, as from `box`.
     found : dict
         Better half widths of `y` and `x`. That of a displacement between walls is not used: it
-        follows from the velocity's.
+        follows from the velocity's; nor is it elsewhere if smaller than what the velocity
+        allows, for a coarse solution does not see a well that holds little.
     """
     ends = ends | {y: found[y]}
     if x in ends:
         walls = scene.mechanics.argument == x
-        ends[x] = _reach(scene, found[y], ends.get(eta, 0.0)) if walls else found[x]
+        allowed = _reach(scene, found[y], ends.get(eta, 0.0))
+        ends[x] = allowed if walls else max(allowed, found[x])
     return ends
 
 
@@ -198,8 +200,21 @@ def _mirrored(positive):
     return np.unique(np.concatenate([-positive, positive]))
 
 
-def _wells(scene, ends):
-    """Potential in which each variable moves, and its temperature; that of the noise is known."""
+def potentials(scene, ends):
+    """Potential in which each variable moves, and the temperature.
+
+    Parameters
+    ----------
+    scene : Scene
+    ends : dict
+        Half widths of the box, see `box`. The temperature of a displacement is that of the
+        velocity, estimated from its half width.
+
+    Returns
+    -------
+    dict
+        Maps symbols to (sympy.Expr, float).
+    """
     found, noise = {}, scene.noise
     if noise.kind == "langevin":
         found[eta] = noise.potential_expression, noise.sigma**2 / 2
@@ -255,7 +270,7 @@ def axes(scene, ends, levels, margin=0.0):
     dict
         Maps symbols, in the order of the axes, to `Axis`.
     """
-    made, wells = {}, _wells(scene, ends)
+    made, wells = {}, potentials(scene, ends)
     for symbol in variables(scene):
         level, end = levels[symbol], ends[symbol]
         # with many variables, layers are dear

@@ -257,7 +257,8 @@ class Split:
         if failed:
             raise ToleranceError(
                 f"the Poisson equation was not solved to {accuracy:.0e} in "
-                f"{_KRYLOV * _RESTARTS} iterations; loosen tol"
+                f"{_KRYLOV * _RESTARTS} iterations, as in scenes that mix slowly; loosen tol or "
+                "use Monte Carlo"
             )
         return solution
 

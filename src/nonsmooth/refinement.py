@@ -24,6 +24,7 @@ _NORMAL_TAIL = 3.29  # standard deviations outside which a normal variable has t
 _TAIL = 1e-3  # mass outside a box, from which the box of the wanted depth is extrapolated
 _COARSE, _FINEST = {2: 2, 3: 1, 4: 1}, 9  # levels, the coarse one by the number of variables
 _STIFF = {True: 1e12, False: 1e7}  # n that stands for inf, for elastic walls and otherwise
+_LONG = 100.0  # correlation time of a slow scene, relative to that of its damping
 _LARGEST = {2: 120_000, 3: 600_000, 4: 2_500_000}  # grid points
 
 
@@ -71,6 +72,15 @@ def growth_rate(scene, grid, accuracy):
     return 2 * half
 
 
+def correlation_time(scene, grid, growth, accuracy):
+    """Integral over time of the correlation of g, gamma^2 / (2 Var g), given gamma^2 = growth."""
+    axes, solve = solver(scene, grid)
+    g = solve.fold(evaluate(scene.numerical_observable(), axes))
+    _, mean = solve.solve(g, ODD, accuracy)
+    _, variance = solve.solve((g - mean) ** 2, EVEN, accuracy)
+    return growth / (2 * variance)
+
+
 def fitted(scene, depth, level):
     """Choose the box and the shift on coarse grids.
 
@@ -110,7 +120,7 @@ def fitted(scene, depth, level):
 def _extrapolated(nodes, masses, depth):
     """Half width for a depth, as if the tails beyond what coarse grids resolve were normal."""
     far = np.argsort(-np.abs(nodes))
-    outside = np.cumsum(masses[far])
+    outside = np.cumsum(np.maximum(masses[far], 0.0))
     edge = np.interp(_TAIL, outside, np.abs(nodes[far]))
     return min(float(edge * math.sqrt(2 * depth) / _NORMAL_TAIL), 1.5 * nodes[-1])
 
@@ -126,7 +136,9 @@ def _with_best_shift(scene, grid):
             continue
         count[shift] = solve.iterations
     if not count:
-        raise ToleranceError("the iteration converges on no coarse grid; use Monte Carlo")
+        raise ToleranceError(
+            "the iteration converges on no coarse grid, as in scenes that mix slowly; use Monte Carlo"
+        )
     return replace(grid, shift=min(count, key=count.get))
 
 
@@ -148,7 +160,8 @@ def growth_to(scene, tol):
     Raises
     ------
     ToleranceError
-        If the grid becomes too large; the message has the best value and its error.
+        If the grid becomes too large; the message has the best value, its error and, where rare
+        transitions make the equation ill-conditioned, their time scale.
     """
     if not math.isinf(scene.n):
         return _refined(scene, tol)[:2]
@@ -215,7 +228,11 @@ def _refined(scene, tol):
             if error <= tol * abs(last):
                 break
         below, grid = grid, raised(grid)
-    require(error <= tol * abs(last), last, error, tol)
+    if error > tol * abs(last):
+        time = abs(correlation_time(scene, below, last, accuracy))
+        slow = time > _LONG * max(scene.damping, 1 / scene.damping)
+        cure = f"the scene mixes slowly, g stays correlated for some {time:.0e}; loosen tol"
+        require(False, last, error, tol, cure if slow else "loosen tol")
     return last, error, below
 
 

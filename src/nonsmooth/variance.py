@@ -1,11 +1,13 @@
 """Variance of int_0^tau g and its growth rate gamma^2."""
 
 import time
+from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import xarray as xr
 
-from nonsmooth import models, quadrature, schemes, spectral
+from nonsmooth import models, quadrature, schemes, spectral, wells
 from nonsmooth.closed_form import friction_variance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate, require
@@ -19,6 +21,7 @@ _EXACT = {1: 1e-10, 2: 1e-6, 3: 2e-4, 4: 1e-2}  # tolerances by the number of st
 _SAMPLED, _LEAST_SAMPLED = 1e-2, 1e-3  # tolerances of Monte Carlo: unless given, and the least
 _TIMES = (10.0, 60.0, 110.0)  # between which Monte Carlo takes the slope, unless it changes
 _DOUBLINGS = 7
+_SCOUTS = 1024  # paths from each well
 _STEP = 0.02  # times the smaller of 1 and 1/C_b
 
 
@@ -103,17 +106,32 @@ def _first_step(scene):
 
 
 def _settled_growth(scene, step, paths, seed, threads):
-    """Lengthen the time until the slope of the variance no longer changes with it."""
+    """Lengthen the time until the slope of the variance changes neither with it nor with the start.
+
+    Paths that never leave the well they start in settle too, on the wrong slope.
+    """
+    elsewhere = [replace(scene, start=start) for start in wells.starts(scene)]
     times = _TIMES
     for attempt in range(_DOUBLINGS):
         own = labelled(seed, attempt)
-        sample = growth(integrals(scene, times, step, paths, own, threads=threads), times)
-        if sample.settled:
-            return times, sample
+
+        def sampled(scene, paths, own=own, times=times):
+            return growth(integrals(scene, times, step, paths, own, threads=threads), times)
+
+        scouts = [sampled(other, _SCOUTS) for other in elsewhere] if len(elsewhere) > 1 else []
+        forgotten = all(a.agrees(b) for a, b in combinations(scouts, 2))
+        if forgotten:
+            sample = sampled(scene, paths)
+            if sample.settled and all(sample.agrees(scout) for scout in scouts):
+                return times, sample
         times = tuple(2 * t for t in times)
+    changes = (
+        f"{sample.rate:.3g}, still changing by {sample.settling:.1g}"
+        if forgotten
+        else f"paths from {len(elsewhere)} wells of the potentials still differ"
+    )
     raise ToleranceError(
-        f"the growth rate of the variance has not settled by t = {times[-1] / 2:g}: "
-        f"{sample.rate:.3g}, still changing by {sample.settling:.1g}; "
+        f"the growth rate of the variance has not settled by t = {times[-1] / 2:g}: {changes}; "
         "the scene mixes slowly, or int_0^t g has no such rate"
     )
 
