@@ -1,4 +1,7 @@
-"""Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b)."""
+"""Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b).
+
+A threshold is a number b, for both sides, or a pair (lower, upper): see `thresholds.bounds`.
+"""
 
 import numpy as np
 import scipy
@@ -10,6 +13,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
+from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
     PILOT_PATHS,
@@ -45,15 +49,15 @@ def first_passage_counts(
     scheme="strang",
     precision="float32",
 ):
-    """Count the paths that cross sqrt(p) b in each interval between the horizons p T.
+    """Count the paths that cross sqrt(p) times the threshold between the horizons p T.
 
     A path is dropped once it has crossed.
 
     Parameters
     ----------
     scene : Scene
-    threshold : float
-        b, "1".
+    threshold : float or (float, float)
+        b or its lower and upper level, "1".
     horizons : array_like, shape (k,)
         Increasing T > 0, "1".
     p : float
@@ -66,7 +70,13 @@ def first_passage_counts(
     Returns
     -------
     numpy.ndarray of int, shape (k,)
+
+    Raises
+    ------
+    SceneError
+        If a parameter is out of range or a path diverges.
     """
+    levels = np.sqrt(p) * np.array(bounds(threshold))
     grid = [
         (steps, schemes.coefficients(scene, scheme, h, precision))
         for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), step)
@@ -77,7 +87,7 @@ def first_passage_counts(
         panel = new_panel(scene, seed, block, precision)
         left = [lanes]
         for steps, s in grid:
-            left.append(march(s, panel, left[-1], steps, np.sqrt(p) * threshold))
+            left.append(march(s, panel, left[-1], steps, *levels))
         # a path that diverges never crosses
         require_finite([panel.total[TOTAL_DELTA, : left[-1]]])
         return -np.diff(left)
@@ -101,7 +111,8 @@ def first_passage_bias(scene, threshold, horizons, p, step, paths, seed, threads
         Of the probability with the longer step, with its standard error.
     """
     times = p * np.asarray(horizons, dtype=float)
-    _, (fine, coarse) = coupled(scene, times, step, paths, seed, threads, np.sqrt(p) * threshold)
+    levels = np.sqrt(p) * np.array(bounds(threshold))
+    _, (fine, coarse) = coupled(scene, times, step, paths, seed, threads, levels)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
     factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
     # where no path changed sides, as if one had
@@ -126,9 +137,8 @@ def first_passage_shift(scene, threshold, horizon, p, step, paths, seed, threads
     numpy.ndarray, shape (3,)
         Sums over the paths of the powers 0 to 2 of log(time with step / time with step/2).
     """
-    _, (fine, coarse) = coupled(
-        scene, [p * horizon], step, paths, seed, threads, np.sqrt(p) * threshold
-    )
+    levels = np.sqrt(p) * np.array(bounds(threshold))
+    _, (fine, coarse) = coupled(scene, [p * horizon], step, paths, seed, threads, levels)
     both = np.isfinite(fine) & np.isfinite(coarse)
     ratio = np.log(coarse[both] / fine[both])
     return np.array([len(ratio), ratio.sum(), np.sum(ratio**2)])
