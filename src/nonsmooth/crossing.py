@@ -200,7 +200,7 @@ def crossing_probability(
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (two standard errors are at most `tol`) and on the time
-        step (its bias is half).
+        step (its bias is half). ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
