@@ -8,7 +8,11 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "brownian": ["brownian_crossing"],
+        "brownian": [
+            "brownian_crossing",
+            "brownian_first_passage_density",
+            "brownian_survival",
+        ],
         "crossing": ["crossing_probability"],
         "density": ["invariant_density"],
         "errors": ["NonsmoothError"],
