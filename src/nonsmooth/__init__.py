@@ -17,6 +17,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "density": ["invariant_density"],
         "errors": ["NonsmoothError"],
         "estimate": ["Estimate"],
+        "milne": ["extrapolation_length"],
         "noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],
         "scene": ["Scene"],
         "spectral_gap": ["spectral_gap"],

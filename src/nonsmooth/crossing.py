@@ -11,7 +11,9 @@ import xarray as xr
 
 from nonsmooth import schemes
 from nonsmooth.brownian import asymptotic_crossing
+from nonsmooth.corrected import corrected_crossing
 from nonsmooth.errors import SceneError
+from nonsmooth.first_passage import spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
@@ -182,6 +184,7 @@ def crossing_probability(
     seed=0,
     precision=None,
     threads=None,
+    order=None,
 ):
     """Probability that int_0^t g leaves an interval before p T.
 
@@ -195,12 +198,14 @@ def crossing_probability(
         Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem, > 0.
-    method : {"monte_carlo", "asymptotic"}
-        ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent).
+    method : {"monte_carlo", "spectral", "asymptotic", "corrected"}
+        ``"spectral"`` is deterministic, for one state variable and white noise.
+        ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
+        ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (two standard errors are at most `tol`) and on the time
-        step (its bias is half). ``"asymptotic"`` has none.
+        step (its bias is half). ``"spectral"``: 1e-7 unless given. The formulas have none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -210,6 +215,8 @@ def crossing_probability(
         ``"monte_carlo"`` only; ``"float32"`` unless given.
     threads : int, optional
         All cores unless given.
+    order : {1, 2}, optional
+        Of ``"corrected"``; 1 unless given.
 
     Returns
     -------
@@ -217,8 +224,10 @@ def crossing_probability(
         Over `horizon`: `probability` and `probability_error`, for ``"monte_carlo"`` the
         standard error, with the 95 % confidence limits `lower` and `upper`, and `step_bias`, the
         bias of the time step as measured by halving it, with its standard error
-        `step_bias_error`; for ``"asymptotic"`` the error inherited from gamma^2 only, not the
-        distance to the finite-p probability.
+        `step_bias_error`; for ``"spectral"`` the difference of two resolutions, with `survival`
+        and `survival_error`, the complement to relative accuracy; for the formulas the error
+        inherited from gamma^2 and the other constants only, not the distance to the finite-p
+        probability.
 
     Raises
     ------
@@ -234,7 +243,7 @@ def crossing_probability(
         require_positive("tol", tol)
     if method not in METHODS:
         raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
-    options = {"tol": tol, "step": step, "paths": paths, "precision": precision}
+    options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: value for name, value in options.items() if value is not None}
     for name in given:
         if name not in inspect.signature(METHODS[method]).parameters:
@@ -299,10 +308,25 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
     return {"probability": value, "probability_error": error}, {}
 
 
+def _spectral(scene, threshold, horizons, p, seed, threads, tol=1e-7):
+    lower, upper = np.sqrt(p) * np.array(threshold)
+    return spectral_crossing(scene, lower, upper, p * horizons, tol), {}
+
+
+def _corrected(scene, threshold, horizons, p, seed, threads, order=1):
+    value, error = corrected_crossing(scene, *threshold, horizons, p, order)
+    return {"probability": value, "probability_error": error}, {}
+
+
 # Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
 # the other parameters of `crossing_probability` that it has; it returns the variables over the
 # horizons, as a dict, and the attributes.
-METHODS = {"monte_carlo": _monte_carlo, "asymptotic": _asymptotic}
+METHODS = {
+    "monte_carlo": _monte_carlo,
+    "spectral": _spectral,
+    "asymptotic": _asymptotic,
+    "corrected": _corrected,
+}
 
 
 def crossing_estimate(crossed, paths):

@@ -6,6 +6,7 @@ saddle point or at the leading pole instead of 0: the error is then relative.
 """
 
 import bisect
+from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import minimize_scalar, root_scalar
@@ -58,9 +59,10 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"the spectral method needs the state (y) and white noise, not "
             f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
         )
-    solution = _solve(scene, lower, upper, times, *_LEVELS[0])
+    begins, rises = _rise(scene, lower, upper, times)
+    solution = _solve(scene, lower, upper, times, begins, rises, *_LEVELS[0])
     for level in _LEVELS[1:]:
-        coarse, solution = solution, _solve(scene, lower, upper, times, *level)
+        coarse, solution = solution, _solve(scene, lower, upper, times, begins, rises, *level)
         error = np.abs(solution - coarse) + 1e-13 * solution + _UNDERFLOW
         error[0] = np.where(solution[0] == 0, _NEGLIGIBLE, error[0])
         # the same event: what is known of the rarer of the two is known of both
@@ -89,18 +91,24 @@ def _windows(times, first, end, ratio):
         first = last
 
 
-def _solve(scene, lower, upper, times, degree, count):
+def _rise(scene, lower, upper, times):
+    """Places of the first times at which the probability is not negligible, and has risen."""
+
+    @lru_cache
+    def bound(k):
+        grid = ordinates(scene, _LEVELS[0][0], times[k], _FINELY)
+        return _chernoff(grid, lower, upper, times[k])[0]
+
+    begins = bisect.bisect_left(range(len(times)), _NEGLIGIBLE, key=bound)
+    return begins, bisect.bisect_left(range(len(times)), _RISEN, lo=begins, key=bound)
+
+
+def _solve(scene, lower, upper, times, begins, rises, degree, count):
     """Probability and survival probability, shape (2, k)."""
 
     def grid(where, **graded):
         return ordinates(scene, degree, times[where][0], **graded)
 
-    def bound(k):
-        return _chernoff(grid(slice(k, None), grading=_FINELY), lower, upper, times[k])[0]
-
-    places = range(len(times))
-    begins = bisect.bisect_left(places, _NEGLIGIBLE, key=bound)
-    rises = bisect.bisect_left(places, _RISEN, lo=begins, key=bound)
     found = np.zeros((2, len(times)))
     for here in _windows(times, begins, rises, _NARROW):
         fine = grid(here, grading=_FINELY)

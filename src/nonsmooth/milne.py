@@ -35,14 +35,15 @@ class Expansion:
         B = E[g r]: long waves decay at the rate D k^2 - B k^4 / p.
     corner : float
         S, the dipole that the start of time leaves at the thresholds.
-    start : float
-        h at the start; A h = D - g u.
+    poisson, start : float
+        u and h at the start; A u = -g, A h = D - g u.
     """
 
     diffusion: float
     length: float
     dispersion: float
     corner: float
+    poisson: float
     start: float
 
 
@@ -163,5 +164,6 @@ def _expansion(scene, degree):
         float(length),
         float(np.sum(weights * g * r)),
         float(np.sum(weights * u**2) - length**2 / 2 + layer.sum()),
+        float(grid.start[ODD][inner] @ u),
         float(grid.start[EVEN] @ h),
     )

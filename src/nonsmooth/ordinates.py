@@ -8,7 +8,6 @@ where g = 0 (grazing); the elements are graded towards the zeros of g.
 from dataclasses import dataclass
 
 import numpy as np
-import sympy
 
 from nonsmooth import models, quadrature
 from nonsmooth.elements import continuous, lobatto
@@ -91,9 +90,7 @@ class Ordinates:
 
 def _solve_scaled(matrix, right):
     scale = 1 / np.sqrt(np.abs(np.diag(matrix)))
-    return scale[:, None] * np.linalg.solve(
-        matrix * np.outer(scale, scale), scale[:, None] * right
-    )
+    return scale[:, None] * np.linalg.solve(matrix * np.outer(scale, scale), scale[:, None] * right)
 
 
 def ordinates(scene, degree, time, grading=_GRADING):

@@ -89,7 +89,9 @@ def _of_all(grid, resolvent, balance):
         )
     return (
         Modes(rates[outward], vectors[up][:, outward], vectors[~up][:, outward], start[outward]),
-        Modes(-rates[~outward], vectors[~up][:, ~outward], vectors[up][:, ~outward], start[~outward]),
+        Modes(
+            -rates[~outward], vectors[~up][:, ~outward], vectors[up][:, ~outward], start[~outward]
+        ),
     )
 
 
@@ -123,7 +125,9 @@ def first_passage(grid, z, lower, upper):
         up = grid.g[grid.moving] > 0
         strengths = np.split(
             np.linalg.solve(
-                np.block([[above.own, below.other * far_below], [above.other * far_above, below.own]]),
+                np.block(
+                    [[above.own, below.other * far_below], [above.other * far_above, below.own]]
+                ),
                 np.concatenate([weights[up], weights[~up]]),
             ),
             [np.count_nonzero(up)],
