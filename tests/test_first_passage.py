@@ -10,7 +10,7 @@ from nonsmooth.laplace import hyperbola
 from nonsmooth.milne import expansion
 
 FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
-DIGITS = 5e-8  # of values with seven digits
+DIGITS = 1e-7  # a unit in the last of seven
 
 
 class TestContour:
@@ -28,7 +28,7 @@ class TestMilne:
     """kappa and the constants of order 2 against closed forms."""
 
     def test_ornstein_uhlenbeck(self):
-        """Without friction kappa = -zeta(1/2) sigma / (sqrt(2) C_b^(3/2)) (Marshall, Watson 1985)."""
+        """Without friction kappa = -zeta(1/2) sigma / (sqrt(2) C_b^(3/2)) (Marshall & Watson)."""
         for damping in (0.3, 1.0, 5.0):
             scene = ns.Scene("elasto_plastic", potential="0", damping=damping)
             found = ns.extrapolation_length(scene)

@@ -17,10 +17,13 @@ from nonsmooth.ordinates import ordinates
 from nonsmooth.spectral import applies
 from nonsmooth.transport import first_passage
 
-_LEVELS = ((7, 16), (9, 20), (11, 24), (14, 30))  # polynomial degree, nodes of a contour
+# polynomial degree, nodes of a contour for a single time; more, of larger real part, would only
+# make the rounding errors grow
+_LEVELS = ((7, 9), (9, 11), (11, 12), (14, 13))
+_PER_DECADE = 10  # nodes more for each decade of times
 # half angles about the negative axis: of the poles; while the probability rises, its transform
 # grows there, like exp(-c z^(3/4)) for a noise that is integrated twice
-_SECTOR, _WIDE_SECTOR = 0.3, 1.0
+_SECTOR, _WIDE_SECTOR, _WIDER = 0.3, 1.0, 2  # the last: times as many nodes
 _WINDOW, _NARROW = 10.0, 1.6  # last time over first time, of a contour; while it rises
 _NEGLIGIBLE, _RISEN = 1e-14, 0.5  # bounds of the probability; below the first, it is taken as 0
 _FINELY = 0.7  # grading of the elements while the probability rises
@@ -146,7 +149,8 @@ def _invert(grid, lower, upper, times, count, sector, begin, transform):
     The pole a survival probability begins at is negative: there the contour keeps clear of it.
     """
     window = times[0], max(times[-1], 1.01 * times[0])
-    own = hyperbola(*window, count, sector)
+    count = count * (_WIDER if sector == _WIDE_SECTOR else 1)
+    own = hyperbola(*window, round(count + _PER_DECADE * np.log10(window[1] / window[0])), sector)
     shift = begin if begin < 0 else max(0.0, begin - own.nodes[0].real)
     nodes = own.nodes + shift
     values = [transform(first_passage(grid, z, lower, upper), z) for z in nodes]

@@ -1,8 +1,8 @@
 """Inverse Laplace transform on hyperbolic contours.
 
-f(t) = 1/(2 pi i) int exp(z t) F(z) dz by the trapezoidal rule on z(u) = shift + mu (1 + sin(iu - a)),
-which converges geometrically for F analytic off a sector around the negative axis. The parameters
-for all t in [first, last] are those of Weideman and Trefethen, Math. Comp. 76 (2007) 1341.
+f(t) = 1/(2 pi i) int exp(z t) F(z) dz by the trapezoidal rule on z(u) = mu (1 + sin(iu - a)), which
+converges geometrically for F analytic off a sector around the negative axis. The parameters for
+all t in [first, last] are those of Weideman and Trefethen, Math. Comp. 76 (2007) 1341.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class Contour:
         return (np.exp(np.outer(times, self.nodes)) @ (self.weights * transform)).imag
 
 
-def hyperbola(first, last, count, sector=0.0, shift=0.0):
+def hyperbola(first, last, count, sector=0.0):
     """Choose the contour for times between `first` and `last`.
 
     Parameters
@@ -48,10 +48,7 @@ def hyperbola(first, last, count, sector=0.0, shift=0.0):
     count : int
         Number of nodes in the upper half plane.
     sector : float
-        F is analytic where |arg(shift - z)| > sector.
-    shift : float
-        Real point the sector begins at, or any point right of it: for f = exp(shift t) f_1, the
-        error is relative to exp(shift t).
+        F is analytic where |arg(-z)| > sector.
 
     Returns
     -------
@@ -74,6 +71,4 @@ def hyperbola(first, last, count, sector=0.0, shift=0.0):
     step = reach(a) / count
     mu = (4 * np.pi * a - np.pi**2 + 2 * np.pi * sector) / reach(a) * count / last
     u = (np.arange(count) + 0.5) * step
-    return Contour(
-        shift + mu * (1 + np.sin(1j * u - a)), mu * step / np.pi * 1j * np.cos(1j * u - a)
-    )
+    return Contour(mu * (1 + np.sin(1j * u - a)), mu * step / np.pi * 1j * np.cos(1j * u - a))

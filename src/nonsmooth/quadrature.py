@@ -301,11 +301,11 @@ def _edges(problem):
     if problem.depth(end) > _DEEPEST:
         end = brentq(lambda y: problem.depth(y) - _DEEPEST, 0.0, end)
     edges = _apart([-end, -problem.knot, 0.0, problem.knot, end], end)
-    switches = [vectorised(f, (models.y,)) for f in switches(problem.varying)]
+    functions = [vectorised(f, (models.y,)) for f in switches(problem.varying)]
     while True:  # edges may bring to light kinks that were too close together
         while np.any(steep := np.abs(np.diff(problem.depth(edges))) > _STEEPEST):
             edges = np.sort(np.append(edges, (edges[:-1] + edges[1:])[steep] / 2))
-        grown = _apart(np.concatenate([edges, *(sign_changes(f, edges) for f in switches)]), end)
+        grown = _apart(np.concatenate([edges, *(sign_changes(f, edges) for f in functions)]), end)
         if len(grown) == len(edges) or len(grown) > _MOST:
             return edges
         edges = grown
