@@ -117,6 +117,6 @@ def test_unreachable_tolerance_is_refused_with_the_best_value():
 
 
 def test_other_states_are_refused():
-    """More than one variable has no solver yet, and the message says what to do."""
+    """More than two variables have no solver, and the message says what to do."""
     with pytest.raises(SceneError, match="use simulate"):
-        ns.variance(ns.Scene("obstacle"), [1.0])
+        ns.variance(ns.Scene("obstacle", "langevin"), [1.0])

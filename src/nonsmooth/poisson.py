@@ -110,6 +110,14 @@ class Direct:
         solution = self._factor(EVEN).solve(np.append(values, 0.0))
         return solution[:-1], float(solution[-1])
 
+    def resolvent(self, values, parity, shift):
+        """Apply (shift - A)^-1, shift > 0, to a function on the (half) grid."""
+        key = shift, parity if self.mirrored else EVEN
+        if key not in self._factors:
+            matrix = self.matrix(parity)
+            self._factors[key] = factorise(shift * sp.eye_array(matrix.shape[0]) - matrix)
+        return self._factors[key].solve(values)
+
     def stationary(self, _accuracy=None):
         """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
         one = np.zeros(self.fold(np.empty(self.size)).size + 1)

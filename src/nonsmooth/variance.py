@@ -1,5 +1,6 @@
 """Variance of int_0^tau g and its growth rate gamma^2."""
 
+import math
 import time
 from dataclasses import replace
 from itertools import combinations
@@ -7,7 +8,7 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
-from nonsmooth import models, quadrature, schemes, spectral, wells
+from nonsmooth import models, quadrature, schemes, spectral, transient, wells
 from nonsmooth.closed_form import friction_variance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate, require
@@ -18,6 +19,7 @@ from nonsmooth.trajectories import PILOT_PATHS
 
 _DEGREES = (8, 12, 16, 20, 24)
 _EXACT = {1: 1e-10, 2: 1e-6, 3: 2e-4, 4: 1e-2}  # tolerances by the number of state variables
+_VARIANCE = {1: 1e-9, 2: 1e-5}  # absolute, of v(tau)/tau
 _SAMPLED, _LEAST_SAMPLED = 1e-2, 1e-3  # tolerances of Monte Carlo: unless given, and the least
 _TIMES = (10.0, 60.0, 110.0)  # between which Monte Carlo takes the slope, unless it changes
 _DOUBLINGS = 7
@@ -166,22 +168,26 @@ def _by_monte_carlo(scene, tol, seed, threads, began):
     return Estimate(sample.rate, error, "Monte Carlo", time.perf_counter() - began)
 
 
-def variance(scene, times, tol=1e-9):
+def variance(scene, times, tol=None):
     """Mean w(start, tau) and variance v(start, tau) of int_0^tau g - E g (eq. defvgyt).
 
     Parameters
     ----------
     scene : Scene
-        With the one-dimensional state y and white noise.
+        With the one-dimensional state y and white noise, or with two state variables and a
+        finite n.
     times : array_like, shape (t,)
         tau >= 0, "1".
-    tol : float
-        Requested absolute error of v(tau)/tau.
+    tol : float, optional
+        Requested absolute error of v(tau)/tau; unless given, 1e-9 for one state variable and 1e-5
+        for two.
 
     Returns
     -------
     xarray.Dataset
-        `w`, `v` and their error bounds `w_error`, `v_error` over `time`.
+        `w`, `v` and their errors `w_error`, `v_error` over `time`. One variable is solved by an
+        eigenfunction expansion, two by `transient.moments`; the errors are what the last refinement
+        changes, and rounding.
 
     Raises
     ------
@@ -193,20 +199,24 @@ def variance(scene, times, tol=1e-9):
     times = np.atleast_1d(np.asarray(times, dtype=float))
     if not np.all(times >= 0):
         raise SceneError("the times of the variance must not be negative; remove those that are")
-    scale = tol * np.where(times > 0, times, 1.0)
-    (w, v), (w_error, v_error) = _refine(
-        lambda degree: np.array(spectral.moments(scene, times, degree)),
-        # w is the difference of terms as large as the standard deviation, v of E Delta^2 and w^2
-        lambda degree, wv: (
-            spectral.rounding(scene, degree)
-            * np.array([np.abs(wv[0]) + np.sqrt(np.abs(wv[1])), np.abs(wv[1]) + wv[0] ** 2])
-        ),
-        lambda wv: np.array([np.full_like(times, np.inf), scale]),
-    )
-    if np.any(v_error > scale):
+    if spectral.applies(scene):
+        tol = _VARIANCE[1] if tol is None else tol
+        (w, v), (w_error, v_error) = _of_velocity(scene, times, tol)
+    elif len(scene.state) == 2 and not math.isinf(scene.n):
+        tol = _VARIANCE[2] if tol is None else tol
+        (w, v), (w_error, v_error) = transient.moments(scene, times, tol)
+    else:
+        raise SceneError(
+            f"v(tau) is solved for one or two state variables and, for two, a finite n, not for "
+            f"({', '.join(scene.state)}) with {scene.noise.title} at n = {scene.n:g}; use "
+            "simulate, which takes every scene"
+        )
+    rate, rate_error = (part / np.where(times > 0, times, 1.0) for part in (v, v_error))
+    worst = int(np.argmax(rate_error))
+    if not rate_error[worst] <= tol:
         raise ToleranceError(
-            f"v(tau)/tau has an error of {np.max(v_error / scale) * tol:.1e}, above tol = {tol:g}; "
-            "loosen tol"
+            f"v(tau)/tau = {rate[worst]:.10g} at tau = {times[worst]:g} has an error of "
+            f"{rate_error[worst]:.1e}, above tol = {tol:g}; loosen tol"
         )
     return xr.Dataset(
         {
@@ -214,6 +224,20 @@ def variance(scene, times, tol=1e-9):
             for name, values in (("w", w), ("w_error", w_error), ("v", v), ("v_error", v_error))
         },
         coords={"time": times},
+    )
+
+
+def _of_velocity(scene, times, tol):
+    """Solve for w and v, with errors, for the state y alone with white noise."""
+    scale = tol * np.where(times > 0, times, 1.0)
+    return _refine(
+        lambda degree: np.array(spectral.moments(scene, times, degree)),
+        # w is the difference of terms as large as the standard deviation, v of E Delta^2 and w^2
+        lambda degree, wv: (
+            spectral.rounding(scene, degree)
+            * np.array([np.abs(wv[0]) + np.sqrt(np.abs(wv[1])), np.abs(wv[1]) + wv[0] ** 2])
+        ),
+        lambda wv: np.array([np.full_like(times, np.inf), scale]),
     )
 
 

@@ -1,0 +1,224 @@
+"""Mean and variance of int_0^tau (g - E g) from a point, for scenes with two state variables.
+
+With -A u = g - E g and -A h = 2 (g - E g) u - gamma^2, and P the semigroup of A,
+
+    w(tau) = u - r(tau),  E Delta^2 = gamma^2 tau + h - k(tau),
+    r_t = A r,  k_t = A k + 2 (g - E g) r,  (k, r) = (h, u) at 0,
+
+so that errors do not grow with tau. A is not sectorial: the pair (k, r) is projected, in L^2 of the
+invariant measure, on a rational Krylov space, whose poles are real and cost one factorisation
+each. The pole 0 is the Poisson solver and knows the slowest modes; the others resolve early times.
+"""
+
+import math
+from dataclasses import replace
+from functools import reduce
+
+import numpy as np
+import scipy.linalg
+
+from nonsmooth import mesh, refinement
+from nonsmooth.generator import evaluate
+from nonsmooth.poisson import EVEN, ODD
+
+_POLES = (0.0, 10.0)  # larger ones resolve earlier times, and what the grid does not
+_STEPS = range(12, 85, 6)  # dimensions of the Krylov space that are compared
+_SHARE = 0.05  # of the tolerance, for the projection
+_COARSE, _FINEST = 2, 9  # levels
+_LARGEST = 45_000  # grid points; each pole keeps its factors in memory
+_MARGIN = 0.15  # of the box, to see whether it matters
+_DEPENDENT = 1e-10  # a function this much smaller without what it shares with others
+_ROUNDING = 1e-11  # relative; against linear scenes it comes to 2e-12
+_GROWTH = 1e-12  # relative rate from which on a mode is taken to grow
+_AROUND = 1.25  # the box holds the starting point with so much to spare
+
+
+def moments(scene, times, tol):
+    """Solve for w(start, tau) and v(start, tau), eq. (defvgyt).
+
+    Parameters
+    ----------
+    scene : Scene
+        With two state variables and a finite n.
+    times : numpy.ndarray, shape (t,)
+        tau >= 0, "1".
+    tol : float
+        Absolute error of v(tau)/tau that is aimed at.
+
+    Returns
+    -------
+    moments, errors : numpy.ndarray, shape (2, t)
+        w and v. The errors are what the last refinement of the grid changes or, if larger, the sum
+        of what its variables change each for itself; to it come the box and the projection. They
+        are infinite if no projection is stable, as on grids that are too coarse.
+    """
+    scale = np.where(times > 0, times, 1.0)
+
+    def solve(grid):
+        return _on(scene, grid, times, _SHARE * tol * scale)
+
+    def size(change):
+        return np.max(np.abs(change[1]) / scale)
+
+    grid = _first_grid(scene, tol)
+    value, inexact = solve(grid)
+    while True:
+        trials = {symbol: solve(grid.raised(symbol)) for symbol in grid.levels}
+        changes = {symbol: trial[0] - value for symbol, trial in trials.items()}
+        coarse = [s for s in changes if not size(changes[s]) <= tol / (2 * len(changes))]
+        finer = grid
+        for symbol in coarse:
+            finer = finer.raised(symbol)
+        if not coarse or not _affordable(scene, refinement.raised(finer)):
+            break
+        grid = finer
+        value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
+    last, inexact = solve(refinement.raised(grid))
+    beyond = solve(replace(grid, margin=_MARGIN))[0] - value
+    apart = sum(np.abs(change) for change in changes.values())
+    error = np.maximum(np.abs(last - value), apart) + 2 * (np.abs(beyond) + inexact)
+    # w is the difference of terms as large as the standard deviation
+    w, v = np.abs(last)
+    error += _ROUNDING * np.array([w + np.sqrt(v), v + w**2])
+    return last, np.nan_to_num(error, nan=np.inf)
+
+
+def _first_grid(scene, tol):
+    grid = refinement.fitted(scene, math.log(1 / tol) + refinement.SPARE, 1)
+    ends = {
+        symbol: max(end, _AROUND * abs(scene.start.get(symbol.name, 0.0)))
+        for symbol, end in grid.ends.items()
+    }
+    return replace(grid, ends=ends, levels=dict.fromkeys(grid.levels, _COARSE))
+
+
+def _affordable(scene, grid):
+    return (
+        math.prod(len(axis.nodes) for axis in mesh.axes(scene, grid.ends, grid.levels).values())
+        <= _LARGEST
+        and max(grid.levels.values()) <= _FINEST
+    )
+
+
+def _on(scene, grid, times, allowed):
+    """Solve for w and v on one grid; with what the last Krylov vectors change in them."""
+    axes, solver = refinement.solver(scene, grid)
+    g = solver.fold(evaluate(scene.numerical_observable(), axes))
+    u, mean = solver.solve(g, ODD)
+    g = g - mean
+    masses = solver.fold(solver.stationary())
+    masses /= masses.sum()
+    if not solver.mirrored:
+        u -= masses @ u
+    h, gamma2 = solver.solve(2 * g * u, EVEN)
+    krylov = _Krylov(solver, g, masses)
+    slow, fast = _Functions(masses, [np.ones_like(g), h]), _Functions(masses, [u, g])
+    at = _at_start(scene, axes)
+    found = inexact = np.full((2, len(times)), np.nan)
+    for dimension in _STEPS:
+        krylov.enlarge(dimension, slow, fast)
+        value = _evolve(solver, slow, fast, g, (h, u), gamma2, times, at)
+        if value is None:
+            continue
+        found, inexact = value, np.abs(value - found)
+        if np.all(inexact[1] <= allowed):
+            break
+    return found, inexact
+
+
+class _Functions:
+    """Orthonormal functions in L^2 of the absolute value of a measure."""
+
+    def __init__(self, masses, functions=()):
+        # on coarse grids masses may be negative where they are small
+        self.masses = np.abs(masses) + np.finfo(float).eps * np.max(masses)
+        self.rows = np.empty((0, len(masses)))
+        for function in functions:
+            self.add(function)
+
+    def dot(self, functions):
+        """Coefficients of functions, shape (k, ...)."""
+        return (self.rows * self.masses) @ functions
+
+    def add(self, function):
+        """Orthonormalise a function and append it, unless it depends on the others."""
+        size = math.sqrt(self.masses @ function**2)
+        if size == 0:
+            return False
+        rest = function / size
+        for _ in range(2):
+            rest = rest - self.dot(rest) @ self.rows
+        size = math.sqrt(self.masses @ rest**2)
+        if size < _DEPENDENT:
+            return False
+        self.rows = np.vstack([self.rows, rest / size])
+        return True
+
+
+class _Krylov:
+    """Rational Krylov space of the pair (k, r), from (0, g)."""
+
+    def __init__(self, solver, g, masses):
+        self.solver, self.g, self.masses = solver, g, masses
+        self.pairs = _Functions(np.concatenate([masses, masses]), [np.concatenate([0 * g, g])])
+        self.exhausted = False
+
+    def enlarge(self, dimension, slow, fast):
+        """Add pairs up to a dimension, and their parts to the two lists of functions."""
+        while len(self.pairs.rows) < dimension and not self.exhausted:
+            shift = _POLES[len(self.pairs.rows) % len(_POLES)]
+            k, r = np.split(self.pairs.rows[-1], 2)
+            r = self._resolvent(r, ODD, shift)
+            k = self._resolvent(k + 2 * self.g * r, EVEN, shift)
+            self.exhausted = not self.pairs.add(np.concatenate([k, r]))
+            if not self.exhausted:
+                k, r = np.split(self.pairs.rows[-1], 2)
+                slow.add(k)
+                fast.add(r)
+
+    def _resolvent(self, values, parity, shift):
+        if shift:
+            return self.solver.resolvent(values, parity, shift)
+        solution, _ = self.solver.solve(values, parity)
+        odd = self.solver.mirrored and parity == ODD
+        return solution if odd else solution - self.masses @ solution
+
+
+def _evolve(solver, slow, fast, g, start, gamma2, times, at):
+    """Find w and v from the projected equations of k (`slow`) and r (`fast`); None if they grow."""
+    k0, r0 = slow.dot(start[0]), fast.dot(start[1])
+    many = len(k0)
+    matrix = np.zeros((many + len(r0) + 1,) * 2)
+    matrix[:many, :many] = slow.dot(solver.matrix(EVEN) @ slow.rows.T)
+    matrix[:many, many:-1] = slow.dot(2 * g[:, None] * fast.rows.T)
+    matrix[many:-1, many:-1] = fast.dot(solver.matrix(ODD) @ fast.rows.T)
+    # grids have spurious growing modes of high frequency; a space that has caught one is of no use
+    if _grows(matrix[1:many, 1:many]) or _grows(matrix[many:-1, many:-1]):
+        return None
+    # the exponential's last column is the change since the start, without cancellation
+    matrix[:-1, -1] = matrix[:-1, :-1] @ np.concatenate([k0, r0])
+    changes = np.array([scipy.linalg.expm(tau * matrix)[:-1, -1] for tau in times])
+    w = -changes[:, many:] @ at(solver, fast.rows, ODD)
+    return np.array([w, gamma2 * times - changes[:, :many] @ at(solver, slow.rows, EVEN) - w**2])
+
+
+def _grows(matrix):
+    return np.max(np.linalg.eigvals(matrix).real, initial=0.0) > _GROWTH * np.max(np.abs(matrix))
+
+
+def _at_start(scene, axes):
+    """Return what evaluates functions (rows) of a parity at the starting point."""
+    start = np.array([scene.start.get(symbol.name, 0.0) for symbol in axes])
+
+    def point(where):
+        parts = [axis.interpolation(z) for axis, z in zip(axes.values(), where, strict=True)]
+        return reduce(np.kron, [part.toarray()[0] for part in parts])
+
+    def at(solver, rows, parity):
+        if not solver.mirrored:
+            return rows @ point(start)
+        whole = (point(start) + parity * point(-start)) / 2  # on faces, the mean of both sides
+        half = rows.shape[1]
+        return rows @ (whole[:half] + parity * whole[half:][::-1])
+
+    return at
