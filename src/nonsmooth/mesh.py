@@ -175,7 +175,8 @@ def edges(scene, symbol, end, layers):
         # an elastic wall is as deep as the box, however stiff: the motion in it turns through
         # the plane of y and sqrt(n) x, and the solution is as curved there as it is in y
         outward = _towards(beyond, min(finest, beyond / 8))
-        outward = np.append(outward, beyond * _WITHIN)
+        if len(scene.state) <= 2:  # elements are dear with more
+            outward = np.append(outward, beyond * _WITHIN)
     else:
         outward = _towards(beyond, finest)  # a layer that only stops is thin
     inward = _towards(knot, min(finest, knot / 2)) if symbol != y else np.array([knot / 2, knot])

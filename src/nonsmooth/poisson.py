@@ -15,8 +15,10 @@ import scipy.sparse.linalg as spla
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.generator import assemble
+from nonsmooth.models import x
 
 ODD, EVEN = -1, 1
+_DEPTH = 14.0  # of the box in the norm of residuals, that of a normal density
 _KRYLOV = 150  # vectors kept by GMRES
 _RESTARTS = 4
 
@@ -137,6 +139,13 @@ class Split:
         As for `Direct`.
     shift : float
         The number a of the preconditioner, a rate between those of L and of T.
+
+    Attributes
+    ----------
+    iterations : int
+        Of the last solution.
+    most : int
+        Iterations after which to give up.
     """
 
     def __init__(self, scene, axes, mirrored, shift):
@@ -164,7 +173,7 @@ class Split:
             T[i * size : (i + 1) * size, i * size : (i + 1) * size].tocsr()
             for i in range(self.kept)
         ]
-        self.shift = shift
+        self.shift, self.most = shift, _KRYLOV * _RESTARTS
         self._resolvents = [factorise(shift * sp.eye_array(size) - t) for t in self.transport]
         self._noise_factors = {
             sign: scipy.linalg.lu_factor(shift * np.eye(len(part)) - part)
@@ -176,6 +185,10 @@ class Split:
         near = _bump(rest)
         self.measure = (masses * near[None, :, None]).ravel()
         self.measure /= self.measure.sum()
+        # errors of means are bounded by the norm weighted with the density, not by the plain one,
+        # which is governed by the corners of the box; between walls the density does not fall
+        flat = scene.mechanics.argument if scene.mechanics.argument == x else None
+        self._scale = self.fold(np.sqrt(_normal(axes, flat)))
 
     def unfold(self, half, parity):
         """Continue a function from half of the grid to all of it."""
@@ -235,27 +248,31 @@ class Split:
 
     def _gmres(self, right, parity, accuracy, adjoint=False):
         """Solve (-A + 1 measure') u = f: the measure's integral of u is then the mean of f."""
-        ones, measure = np.ones(right.size), self.measure
+        ones, measure, scale = np.ones(right.size), self.measure, self._scale
         if adjoint:
-            ones, measure = measure, ones
+            ones, measure, scale = measure, ones, ones
         odd = self.mirrored and parity == ODD
 
-        def apply(values):
+        def apply(scaled):
+            values = scaled / scale
             result = -self.generator(values, parity, adjoint)
-            return result if odd else result + ones * (measure @ values)
+            return scale * (result if odd else result + ones * (measure @ values))
+
+        def precondition(scaled):
+            return scale * self._precondition(scaled / scale, parity, adjoint)
 
         self.iterations = 0
 
         def count(_residual):
             self.iterations += 1
+            if self.iterations > self.most:
+                raise self._failure(accuracy)
 
         shape = (right.size, right.size)
         solution, failed = spla.gmres(
             spla.LinearOperator(shape, apply, dtype=float),
-            right,
-            M=spla.LinearOperator(
-                shape, lambda values: self._precondition(values, parity, adjoint), dtype=float
-            ),
+            scale * right,
+            M=spla.LinearOperator(shape, precondition, dtype=float),
             rtol=accuracy,
             restart=_KRYLOV,
             maxiter=_RESTARTS,
@@ -263,12 +280,14 @@ class Split:
             callback_type="pr_norm",
         )
         if failed:
-            raise ToleranceError(
-                f"the Poisson equation was not solved to {accuracy:.0e} in "
-                f"{_KRYLOV * _RESTARTS} iterations, as in scenes that mix slowly; loosen tol or "
-                "use Monte Carlo"
-            )
-        return solution
+            raise self._failure(accuracy)
+        return solution / scale
+
+    def _failure(self, accuracy):
+        return ToleranceError(
+            f"the Poisson equation was not solved to {accuracy:.0e} in {self.most} iterations, as "
+            "in scenes that mix slowly; loosen tol or use Monte Carlo"
+        )
 
     def solve(self, values, parity, accuracy):
         """Solve -A u = f - E f; see `Direct.solve`.
@@ -276,7 +295,7 @@ class Split:
         Parameters
         ----------
         accuracy : float
-            Norm of the residual relative to that of f.
+            Norm of the residual, weighted with a normal density, relative to that of f.
 
         Raises
         ------
@@ -292,6 +311,15 @@ class Split:
         """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
         masses = self.unfold(self._gmres(self.measure, EVEN, accuracy, adjoint=True), EVEN)
         return masses / masses.sum()
+
+
+def _normal(axes, flat):
+    """Normal density that falls by exp(-_DEPTH) at the box's ends, but is flat in one variable."""
+    total = np.ones(1)
+    for symbol, axis in axes.items():
+        depth = 0 if symbol == flat else _DEPTH
+        total = np.kron(total, np.exp(-depth * (axis.nodes / axis.edges[-1]) ** 2))
+    return total
 
 
 def _bump(rest):

@@ -16,9 +16,10 @@ from nonsmooth.generator import evaluate
 from nonsmooth.poisson import EVEN, ODD, Direct, Split
 
 _MARGIN = 0.15  # of the box, to see whether it matters
-_SHIFTS = (2.0, 5.0, 12.0, 30.0)
+_SHIFTS = (12.0, 5.0, 30.0, 2.0)  # in the order in which they are likely to be the best
 _FITS = 4
-_ACCURACY = 0.02  # residual of the iteration, relative to the tolerance
+_ACCURACY = 0.02  # residual of the iteration, relative to the tolerance, to begin with
+_ITERATION = 0.1  # what a tenth of the residual may change, relative to the tolerance
 SPARE = 10.0  # the density outside the box is exp(-SPARE) smaller than the tolerance
 _NORMAL_TAIL = 3.29  # standard deviations outside which a normal variable has the mass _TAIL
 _TAIL = 1e-3  # mass outside a box, from which the box of the wanted depth is extrapolated
@@ -130,6 +131,7 @@ def _with_best_shift(scene, grid):
     count = {}
     for shift in _SHIFTS:
         axes, solve = solver(scene, replace(grid, shift=shift))
+        solve.most = min(count.values(), default=solve.most)
         try:
             solve.solve(solve.fold(evaluate(scene.numerical_observable(), axes)), ODD, 1e-5)
         except ToleranceError:
@@ -168,9 +170,8 @@ def growth_to(scene, tol):
     # ASSUME: METHODS' empirical rates, n^(-1/2) where a wall is hit elastically, else 1/n
     elastic = scene.mechanics.in_potential
     stiff, softer = _STIFF[elastic], 1e-2 * _STIFF[elastic]
-    value, error, below = _refined(scene.with_n(stiff), tol / 2)
+    value, error, below, accuracy = _refined(scene.with_n(stiff), tol / 2)
     fitted_below = replace(below, ends=mesh.narrowed(scene.with_n(softer), below.ends, below.ends))
-    accuracy = tol * _ACCURACY
     gap = growth_rate(scene.with_n(stiff), below, accuracy) - growth_rate(
         scene.with_n(softer), fitted_below, accuracy
     )
@@ -181,10 +182,9 @@ def growth_to(scene, tol):
 
 
 def _refined(scene, tol):
-    """gamma^2, its error, and a grid somewhat coarser than the last."""
-    accuracy = tol * _ACCURACY
+    """gamma^2, its error, a grid somewhat coarser than the last, and the residual."""
     coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE[len(scene.state)])
-    base = growth_rate(scene, coarse, accuracy)
+    base, accuracy, residual = _iterated(scene, coarse, tol)
     many = len(coarse.levels) > 2
     share = tol / (4 if many else 1) / len(coarse.levels)
     grid, changes, expected = coarse, {}, base
@@ -207,7 +207,7 @@ def _refined(scene, tol):
 
     def truncation(where, value):
         larger = replace(where, margin=_MARGIN)
-        return 2 * abs(growth_rate(scene, larger, accuracy) - value) + accuracy * abs(value)
+        return 2 * abs(growth_rate(scene, larger, accuracy) - value) + residual * abs(value)
 
     if many:
         # a second grid is dear: twice what single variables still change, and an eighth
@@ -216,7 +216,7 @@ def _refined(scene, tol):
         last = growth_rate(scene, grid, accuracy)
         error = 2 * apart + abs(last - expected) / 8 + rest
         if error <= tol * abs(last):
-            return last, error, below
+            return last, error, below, accuracy
         below, grid = grid, raised(grid)
     else:
         last = growth_rate(scene, below, accuracy)
@@ -233,7 +233,25 @@ def _refined(scene, tol):
         slow = time > _LONG * max(scene.damping, 1 / scene.damping)
         cure = f"the scene mixes slowly, g stays correlated for some {time:.0e}; loosen tol"
         require(False, last, error, tol, cure if slow else "loosen tol")
-    return last, error, below
+    return last, error, below, accuracy
+
+
+def _iterated(scene, grid, tol):
+    """gamma^2 on a grid, the residual that it needs, and what that leaves of relative error.
+
+    The norm of a residual says little: it is largest where there is no mass, and may stagnate
+    there.
+    """
+    accuracy = tol * _ACCURACY
+    value = growth_rate(scene, grid, accuracy)
+    if len(grid.levels) <= 2:
+        return value, accuracy, accuracy
+    while True:
+        finer = growth_rate(scene, grid, accuracy / 10)
+        change = abs(finer - value) / abs(finer)
+        if change <= _ITERATION * tol:
+            return value, accuracy, max(2 * change, accuracy)
+        value, accuracy = finer, accuracy / 10
 
 
 def raised(grid, by=1):
