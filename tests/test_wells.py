@@ -86,7 +86,7 @@ def test_paths_that_never_leave_their_well_are_refused(monkeypatch):
     scene = ns.Scene(
         "obstacle", potential="x**2/2 + 8*exp(-4*x**2)", observable="x", start={"x": -1.0}
     )
-    with pytest.raises(ToleranceError, match="2 wells .* mixes slowly"):
+    with pytest.raises(ToleranceError, match=r"2 wells .* mixes slowly"):
         ns.asymptotic_variance(scene, tol=0.1, method="monte_carlo")
 
 

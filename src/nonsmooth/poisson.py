@@ -314,7 +314,7 @@ class Split:
 
 
 def _normal(axes, flat):
-    """Normal density that falls by exp(-_DEPTH) at the box's ends, but is flat in one variable."""
+    """Evaluate a normal density, exp(-_DEPTH) at the box's ends, but flat in one variable."""
     total = np.ones(1)
     for symbol, axis in axes.items():
         depth = 0 if symbol == flat else _DEPTH

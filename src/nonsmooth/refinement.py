@@ -139,7 +139,8 @@ def _with_best_shift(scene, grid):
         count[shift] = solve.iterations
     if not count:
         raise ToleranceError(
-            "the iteration converges on no coarse grid, as in scenes that mix slowly; use Monte Carlo"
+            "the iteration converges on no coarse grid, as in scenes that mix slowly; "
+            "use Monte Carlo"
         )
     return replace(grid, shift=min(count, key=count.get))
 

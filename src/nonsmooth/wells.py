@@ -18,7 +18,7 @@ _MOST = 4  # wells of one variable, the deepest
 
 
 def starts(scene):
-    """Starting points in all the wells that a path can be held in.
+    """Find starting points in all the wells that a path can be held in.
 
     Parameters
     ----------
