@@ -4,7 +4,7 @@ import itertools
 import math
 
 import numpy as np
-from scipy.signal import find_peaks
+import scipy
 
 from nonsmooth import mesh
 from nonsmooth.expressions import vectorised
@@ -43,5 +43,5 @@ def _minima(potential, end, temperature):
     place = np.linspace(-end, end, _POINTS)
     height = potential(place) / temperature
     walled = np.pad(height, 1, constant_values=height.max() + 2 * _BARRIER)
-    found = find_peaks(-walled, prominence=_BARRIER)[0] - 1
+    found = scipy.signal.find_peaks(-walled, prominence=_BARRIER)[0] - 1
     return sorted(float(p) for p in place[found[np.argsort(height[found])][:_MOST]])
