@@ -11,7 +11,7 @@ from nonsmooth.configuration import validate
 from nonsmooth.errors import AssumptionWarning, ConfigError, SceneError
 from nonsmooth.noises import Langevin
 from nonsmooth.plasticity import yielding_oscillator
-from nonsmooth.scene import Scene
+from nonsmooth.scene import Scene, by_formulas
 
 SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"
 
@@ -43,11 +43,14 @@ def check(config):
                 f"integer, so that the mesh can be halved; use {nodes // 4 * 4 + 1}"
             )
     _check_times(config["variance"])
-    times = config["sweep"]["variance"]["times"]
-    if sorted(set(times)) != times:
-        raise ConfigError(f"config: 'sweep.variance.times' = {times} must increase; sort them")
+    for key, topic in (("sweep.variance", "sweep"), ("growth.potentials", "growth")):
+        times = config[topic][key.split(".")[1]]["times"]
+        if sorted(set(times)) != times:
+            raise ConfigError(f"config: '{key}.times' = {times} must increase; sort them")
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
+    for parameters in config["growth"]["potentials"]["scenes"]:
+        by_formulas(parameters)
     _check_theorems(config["theorems"])
     for topic in ("growth", "density", "limit_theorem"):
         for name in config[topic]["scenes"]:

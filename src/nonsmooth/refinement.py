@@ -101,7 +101,7 @@ def fitted(scene, depth, level):
     grid = Grid(mesh.box(scene, depth), dict.fromkeys(mesh.variables(scene), level))
     for _ in range(_FITS):
         axes, solve = solver(scene, grid)
-        masses = solve.stationary(1e-3).reshape([len(axis.nodes) for axis in axes.values()])
+        masses = solve.stationary(1e-2).reshape([len(axis.nodes) for axis in axes.values()])
         found = {
             symbol: _extrapolated(
                 axis.nodes,

@@ -233,6 +233,31 @@ class Scene:
         )
 
 
+def by_formulas(parameters):
+    """Return the scene of a configuration, whose colored noise may be given by formulas.
+
+    Parameters
+    ----------
+    parameters : dict
+        Arguments of `Scene`; `noise` may be a dict of the arguments of `Langevin` or, if it has
+        an ``H``, of `Hamiltonian`.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError, ExpressionError
+        As from `Scene` and the noises.
+    """
+    noise = parameters["noise"]
+    if isinstance(noise, dict):
+        kind = noises.Hamiltonian if "H" in noise else noises.Langevin
+        noise = kind(**noise)
+    return Scene(**parameters | {"noise": noise})
+
+
 def _require_known(what, name, known):
     if name not in known:
         near = difflib.get_close_matches(str(name), [str(k) for k in known], n=1)

@@ -24,6 +24,53 @@ rule growth_rate:
         "../scripts/growth/solve.py"
 
 
+rule potentials:
+    input:
+        modules=sources("workflow/scripts/growth/potentials.py"),
+    output:
+        ensure(f"{RESULTS}/growth/potentials/growth.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/growth/potentials.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/growth/potentials.tsv"
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
+    params:
+        scenes=lookup(dpath="growth/potentials/scenes", within=config),
+        tolerance=lookup(dpath="growth/potentials/tolerance", within=config),
+        times=lookup(dpath="growth/potentials/times", within=config),
+        paths=lookup(dpath="growth/potentials/paths", within=config),
+        halving_paths=lookup(dpath="growth/potentials/halving_paths", within=config),
+        step=lookup(dpath="growth/potentials/step", within=config),
+        seed=lookup(dpath="seed", within=config),
+    message:
+        "Solve and simulate scenes with general potentials"
+    script:
+        "../scripts/growth/potentials.py"
+
+
+rule table_potentials:
+    input:
+        found=rules.potentials.output[0],
+        modules=sources("workflow/scripts/growth/table_potentials.py"),
+    output:
+        multiext(f"{RESULTS}/tables/table_potentials", ".csv", ".tex", ".typ"),
+    log:
+        f"{RESULTS}/logs/tables/table_potentials.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/tables/table_potentials.tsv"
+    conda:
+        "../envs/environment.yaml"
+    threads: 1
+    params:
+        scenes=lookup(dpath="growth/potentials/scenes", within=config),
+    message:
+        "Typeset the table of potentials, gamma^2 by two methods"
+    script:
+        "../scripts/growth/table_potentials.py"
+
+
 rule table_5:
     input:
         solved=expand(

@@ -6,7 +6,7 @@ FIGURES = [
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *["table_errata", "table_time_step"],
+    *["table_errata", "table_potentials", "table_time_step"],
 ]
 
 

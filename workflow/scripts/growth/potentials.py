@@ -1,0 +1,81 @@
+"""gamma^2 of scenes whose potentials are given by formulas, with and without Monte Carlo."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.growth import growth, growth_bias, integrals
+from nonsmooth.jobs import produce
+from nonsmooth.scene import by_formulas
+from nonsmooth.variance import asymptotic_variance
+
+DESCRIPTIONS = {
+    "gamma2": "growth rate of the variance of int_0^t g",
+    "gamma2_error": "error bound of the growth rate",
+    "monte_carlo": "growth rate of the variance by Monte Carlo",
+    "monte_carlo_error": "standard error of the growth rate",
+    "bias": "bias of the growth rate by the time step",
+    "bias_error": "standard error of the bias",
+    "settling": "growth rate of the second half less the first's",
+    "settling_error": "standard error of the difference",
+    "correlation_time": "integral of the correlation of g over time",
+    "correlation_time_error": "error of the correlation time",
+}
+
+
+def potentials(scenes, tolerance, times, paths, halving_paths, step, seed, threads):
+    """Solve the Poisson equation of each scene, and sample the slope of its variance.
+
+    Parameters
+    ----------
+    scenes : list of dict
+    tolerance : list of float
+        Relative, for one to four state variables.
+    times : list of float
+        Three; the slope is from the first to the last.
+    paths, halving_paths, step, seed, threads
+        Of Monte Carlo.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `scene`, the number in the list.
+    """
+    rows = []
+    for number, parameters in enumerate(scenes):
+        scene, own = by_formulas(parameters), (seed, "potentials", number)
+        solved = asymptotic_variance(scene, tolerance[len(scene.state) - 1])
+
+        def sample(scene, paths, label, own=own):
+            return growth(
+                integrals(scene, times, step, paths, (*own, label), threads=threads), times
+            )
+
+        found = sample(scene, paths, "growth")
+        bias = growth_bias(scene, times, step, halving_paths, (*own, "halving"), threads)
+        square = sample(replace(scene, observable=f"({scene.observable})**2"), halving_paths, "g^2")
+        spread = square.mean - found.mean**2
+        unsure = np.hypot(square.mean_error, 2 * found.mean * found.mean_error) / spread
+        time = solved.value / (2 * spread)
+        rows.append(
+            [
+                *(solved.value, solved.error, found.rate, found.rate_error, *bias),
+                *(found.settling, found.settling_error),
+                *(time, time * (unsure + solved.error / solved.value)),
+            ]
+        )
+    return artifact.dataset(
+        "Growth rate of the variance of the integrated observable under general potentials",
+        f"Poisson equation, and {paths} paths from t = {times[0]:g} to {times[-1]:g}",
+        {"scene": ("scene", np.arange(len(scenes)), "number of the scene in the configuration")},
+        {
+            name: ("scene", values, DESCRIPTIONS[name])
+            for name, values in zip(DESCRIPTIONS, np.transpose(rows), strict=True)
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(potentials, threads=snakemake.threads), snakemake)
