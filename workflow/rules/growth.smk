@@ -66,7 +66,7 @@ rule table_potentials:
     params:
         scenes=lookup(dpath="growth/potentials/scenes", within=config),
     message:
-        "Typeset the table of potentials, gamma^2 by two methods"
+        "Typeset table 5b, gamma^2 under general potentials by two methods"
     script:
         "../scripts/growth/table_potentials.py"
 

@@ -1,4 +1,4 @@
-"""Table of potentials: gamma^2 of scenes by formula, deterministic and by Monte Carlo."""
+"""Table 5b: gamma^2 of scenes by formula, deterministic and by Monte Carlo."""
 
 import pandas as pd
 import sympy
@@ -43,9 +43,11 @@ def potentials(found, scenes):
                 "$g$": symbol(scene.observable),
             }
             | values
-            | {"correlation time": f"{time['correlation_time']:.{DIGITS}g}"}
+            | {r"$\tau_g$": f"{time['correlation_time']:#.{DIGITS}g}"}
         )
-    return pd.DataFrame(plain), pd.DataFrame(cells)
+    cells = pd.DataFrame(cells)
+    cells.attrs["widths"] = ["auto", "1fr"] + ["auto"] * (len(cells.columns) - 2)
+    return pd.DataFrame(plain), cells
 
 
 def _formulas(scene):
@@ -56,7 +58,10 @@ def _formulas(scene):
         named["v"] = noise.potential_expression
     elif noise.kind == "hamiltonian":
         named |= {"H": noise.energy, "F": noise.dissipation}
-    return [f"${name} = {sympy.latex(formula)}$" for name, formula in named.items()]
+    return [
+        f"${name} = {sympy.latex(formula, fold_short_frac=True)}$"
+        for name, formula in named.items()
+    ]
 
 
 if __name__ == "__main__":
