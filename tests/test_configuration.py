@@ -21,7 +21,7 @@ def changed(path, value):
     *parents, last = path.split(".")
     place = config
     for key in parents:
-        place = place[key]
+        place = place[int(key) if isinstance(place, list) else key]
     place[last] = value
     return config
 
@@ -95,6 +95,10 @@ def test_the_smoke_configuration_only_overrides():
         ("plasticity.oscillator.damping", 0, "must be greater than 0"),
         ("plasticity.oscillator.potential", "x +", "cannot read the formula"),
         ("plasticity.limits", [1, 1], "'plasticity.limits'"),
+        ("growth.potentials.scenes.0.potential", "x +", "cannot read the formula"),
+        ("growth.potentials.scenes.3.noise.potential", "-eta**2", "is not confining"),
+        ("growth.potentials.scenes.3.noise", "langevin", "'growth.potentials.scenes.3.noise'"),
+        ("growth.potentials.times", [10, 60, 20], "'growth.potentials.times'"),
         ("outputs.results", "config.yaml/results", "cannot write into 'config.yaml'"),
     ],
 )

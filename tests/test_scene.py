@@ -6,6 +6,7 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import AssumptionWarning, ExpressionError, NonsmoothError, SceneError
+from nonsmooth.scene import by_formulas
 
 
 @pytest.mark.parametrize(
@@ -90,6 +91,17 @@ def test_a_scene_without_noise_is_refused(noise):
     """One line that says what to choose from."""
     with pytest.raises(SceneError, match="white"):
         ns.Scene("friction", noise=noise)
+
+
+def test_colored_noise_by_formulas():
+    """Of type 2 if it has a Hamiltonian; a name stays a name."""
+    rest = {"model": "friction", "potential": "0", "observable": "y"}
+    for noise, expected in (
+        ("white", ns.White()),
+        ({"potential": "eta**4/4", "sigma": 2.0}, ns.Langevin("eta**4/4", 2.0)),
+        ({"H": "eta**4 + zeta**2", "F": "2"}, ns.Hamiltonian("eta**4 + zeta**2", "2")),
+    ):
+        assert by_formulas(rest | {"noise": noise}).noise == expected
 
 
 def test_penalty_force_is_an_observable():

@@ -107,7 +107,7 @@ def test_named_targets(repository):
     names = [
         *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5", "6", "8", "9")),
         *(f"table_{k}" for k in range(1, 5)),
-        *("table_6", "table_7", "table_errata"),
+        *("table_5", "table_potentials", "table_6", "table_7", "table_errata"),
         *("figures", "tables", "paper"),
     ]
     assert set(names) <= repository.jobs(*names).keys()
