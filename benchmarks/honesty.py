@@ -105,10 +105,10 @@ def three_variables(rng):
 
 CLASSES = {
     "one variable": (one_variable, 60),
-    "linear, two variables": (linear("white", 1e-5), 40),
+    "linear, two variables": (linear("white", 1e-5), 56),
     "linear, three variables": (linear("langevin", 2e-2), 12),
     "linear, four variables": (linear("hamiltonian", 1e-1), 4),
-    "balance, elasto-plastic": (yield_balance, 32),
+    "balance, elasto-plastic": (yield_balance, 44),
     "balance, friction": (friction_balance, 32),
     "nonlinear, two variables": (nonlinear, 60),
     "nonlinear, three variables": (three_variables, 12),
