@@ -23,8 +23,9 @@ _LEVELS = ((7, 9, 0.85), (9, 11, 0.75), (11, 12, 0.7), (14, 13, 0.65))
 _PER_DECADE = 10  # nodes more for each decade of times
 _SECTOR = 0.3  # half angle about the negative axis, of the poles
 # last time over first time, of a contour; while the probability rises, and the rise then
-_WINDOW, _NARROW, _GROWTH = 10.0, 2.5, 300.0
+_WINDOW, _NARROW, _GROWTH = 5.0, 2.5, 300.0
 _NEGLIGIBLE, _RISEN = 1e-14, 0.95  # bounds of the probability; below the first, it is taken as 0
+_LATER = 2.0  # the end of the rise, relative to the time at which its bound is _RISEN
 _FINELY = 0.7  # grading of the elements while the probability rises
 _LAST = 1e-15  # terms of a contour through a saddle, relative to the first
 _SMALL = 1e-3  # survival probabilities below get contours of their own
@@ -70,7 +71,7 @@ def spectral_crossing(scene, lower, upper, times, tol):
     for level in _LEVELS[1:]:
         coarse, solution = solution, _solve(scene, lower, upper, times, saddles, *level)
         error = np.abs(solution - coarse) + 1e-13 * solution + _UNDERFLOW
-        error[0] = np.where(solution[0] == 0, _NEGLIGIBLE, error[0])
+        error[0] = np.where(solution[0] == 0, np.maximum(_NEGLIGIBLE, error[0]), error[0])
         # the same event: what is known of the rarer of the two is known of both
         least = error.min(axis=0)
         error = np.where(error > 1e-12, least + 1e-15, error)
@@ -153,6 +154,8 @@ def _windows(first, end, *growing):
 def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     """Probability and survival probability, shape (2, k)."""
     begins, rises = np.searchsorted(saddles.bound, np.log([_NEGLIGIBLE, _RISEN]))
+    if rises < len(times):  # contours around the poles need some time more
+        rises = np.searchsorted(times, _LATER * times[rises])
     found = np.zeros((2, len(times)))
 
     def transform(where, **graded):
@@ -179,7 +182,7 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
         for here in _windows(late, len(times), (times, _WINDOW)):
             found[1, here] = _survival(transform(here), around_poles(here, pole), times[here])
             found[0, here] = 1 - found[1, here]
-    return found
+    return np.clip(found, 0.0, 1.0)
 
 
 def _probability(transform, contour, times):
