@@ -25,7 +25,7 @@ _SECTOR = 0.3  # half angle about the negative axis, of the poles
 # last time over first time, of a contour; while the probability rises, and the rise then
 _WINDOW, _NARROW, _GROWTH = 5.0, 2.5, 300.0
 _NEGLIGIBLE, _RISEN = 1e-14, 0.95  # bounds of the probability; below the first, it is taken as 0
-_LATER = 2.0  # the end of the rise, relative to the time at which its bound is _RISEN
+_LATER = 2.0  # the end of the rise, relative to the last time whose bound is below _RISEN
 _FINELY = 0.7  # grading of the elements while the probability rises
 _LAST = 1e-15  # terms of a contour through a saddle, relative to the first
 _SMALL = 1e-3  # survival probabilities below get contours of their own
@@ -154,8 +154,8 @@ def _windows(first, end, *growing):
 def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     """Probability and survival probability, shape (2, k)."""
     begins, rises = np.searchsorted(saddles.bound, np.log([_NEGLIGIBLE, _RISEN]))
-    if rises < len(times):  # contours around the poles need some time more
-        rises = np.searchsorted(times, _LATER * times[rises])
+    if rises > begins:  # contours around the poles need some time more
+        rises = max(rises, np.searchsorted(times, _LATER * times[rises - 1]))
     found = np.zeros((2, len(times)))
 
     def transform(where, **graded):
