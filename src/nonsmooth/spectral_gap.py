@@ -13,7 +13,7 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.poisson import EVEN, ODD
 
 _WANTED = 6  # eigenvalues computed; the slowest pair may be complex
-_COARSE, _FINEST = 3, 8  # levels
+_COARSE, _FINEST = 2, 8  # levels
 
 
 def spectral_gap(scene, tol=1e-6):
