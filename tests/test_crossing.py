@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import special, stats
 
 import nonsmooth as ns
 from nonsmooth.crossing import first_passage_counts, first_passage_shift, proportion
 from nonsmooth.errors import SceneError
 from nonsmooth.streams import BLOCK
+from nonsmooth.thresholds import bounds
 from nonsmooth.trajectories import coupled, step_bias
 
 SCENE = ns.Scene("friction", n=100)
@@ -44,6 +45,73 @@ def test_thresholds_out_of_reach_and_within_every_reach():
     assert every.sum() == every[0] == 500
 
 
+def crossed(threshold, scene=SCENE, p=10.0, paths=5_000):
+    """Numbers of paths that have crossed by the horizons, of the same paths for all thresholds."""
+    return np.cumsum(first_passage_counts(scene, threshold, HORIZONS, p, 0.05, paths, 8))
+
+
+def test_levels_of_both_sides():
+    """A number is a pair of opposite levels; every path that leaves leaves by one of them."""
+    assert np.array_equal(crossed((-0.6, 0.6)), crossed(0.6))
+    for lower, upper in ((-0.6, 0.6), (-0.9, 0.4)):
+        both, below, above = (
+            crossed(levels) for levels in ((lower, upper), (lower, np.inf), (-np.inf, upper))
+        )
+        assert np.all(np.maximum(below, above) <= both)
+        assert np.all(both <= below + above)
+        assert both[-1] < below[-1] + above[-1]  # some paths reach both levels
+
+
+@pytest.mark.parametrize("threshold", [0.3, (-0.5, 0.2), (-np.inf, 0.2), (-0.2, np.inf)])
+@pytest.mark.parametrize("scene", [SCENE, ns.Scene("elasto_plastic", "langevin")])
+def test_counts_are_those_of_stored_paths(threshold, scene):
+    """Bit for bit: the extremes of int g over all steps against the levels."""
+    # one step from time to time; up to the first, of 16 steps, int g is far from all levels
+    times, paths, step = np.geomspace(0.1, 4, 70), 1_500, 0.25
+    kept = ns.simulate(scene, 4.0, step=step, paths=paths, seed=6, times=times, keep="paths")
+    lower, upper = bounds(threshold)
+    outside = (kept["delta"] <= lower) | (kept["delta"] >= upper)
+    reached = np.logical_or.accumulate(outside.values, axis=1).sum(axis=0)
+    counts = first_passage_counts(scene, threshold, times, 1.0, step, paths, 6, precision="float64")
+    assert np.array_equal(np.cumsum(counts), reached[1:])
+    assert 0.1 * paths < reached[-1] < paths
+
+
+def test_mirrored_levels_of_an_odd_scene():
+    """Dry friction has no side: both one-sided probabilities are the same, within their errors."""
+    runs = [
+        ns.crossing_probability(SCENE, levels, HORIZONS, p=10, seed=seed)
+        for seed, levels in enumerate([(-np.inf, 0.4), (-0.4, np.inf)])
+    ]
+    assert all(run.attrs["paths"] == 10_000 for run in runs)  # tol = 1e-2
+    difference = runs[0]["probability"] - runs[1]["probability"]
+    error = np.hypot(*(run["probability_error"] for run in runs))
+    assert np.max(np.abs(difference / error)) < stats.norm.isf(FALSE_ALARM / 2 / len(HORIZONS))
+
+
+def test_one_level_by_the_reflection_principle():
+    """P(max >= b) = erfc(b / (gamma sqrt(2 T))) with b + kappa/sqrt(p) for b, error O(1/p)."""
+    p, paths, gamma = 100.0, 40_000, np.sqrt(0.137696412899501)
+    counts = first_passage_counts(SCENE, (-np.inf, 0.6), HORIZONS, p, 0.02, paths, 9)
+    estimate, _, _ = proportion(counts.sum(), paths)
+    expected = special.erfc((0.6 + 0.2911259630 / np.sqrt(p)) / gamma / np.sqrt(2 * HORIZONS[-1]))
+    error = np.sqrt(expected * (1 - expected) / paths)
+    # 1e-3 is the error with two levels; of the step as above
+    assert abs(estimate - expected) < stats.norm.isf(FALSE_ALARM / 2) * error + 1e-3 + 6e-4
+
+
+@pytest.mark.parametrize("levels", [(-1.0, 1.0), (-1.5, 0.7)])
+def test_passage_times_of_two_levels(levels):
+    """The earlier of those of each level, bit for bit, for both steps."""
+    passages = [
+        coupled(SCENE, [2.0, 10.0], 0.1, 1_500, 10, levels=pair)[1]
+        for pair in (levels, (levels[0], np.inf), (-np.inf, levels[1]))
+    ]
+    assert np.array_equal(passages[0], np.minimum(*passages[1:]))
+    assert np.isfinite(passages).any(axis=2).all()
+    assert np.isinf(passages).any(axis=2).all()
+
+
 @pytest.mark.parametrize(("probability", "trials"), [(0.16, 1_000), (0.5, 400), (1e-4, 100_000)])
 def test_interval_covers_at_its_level(probability, trials):
     """Exact coverage by summation over the binomial law: 95 % within two, down to 1e-4."""
@@ -67,6 +135,9 @@ def test_asymptotic_method_is_the_limit():
     run = ns.crossing_probability(SCENE, 0.6, [2.0], method="asymptotic")
     assert float(run["probability"][0]) == pytest.approx(0.5045888, abs=5e-8)
     assert float(run["probability_error"][0]) < 1e-13
+    one_sided = ns.crossing_probability(SCENE, (-np.inf, 0.6), [2.0], method="asymptotic")
+    exact = special.erfc(0.6 / np.sqrt(2 * 2.0 * 0.137696412899501))
+    assert float(one_sided["probability"][0]) == pytest.approx(exact, abs=1e-13)
 
 
 def test_distance_to_the_limit_falls_with_p():
@@ -105,8 +176,10 @@ def test_divergence_is_an_error():
     ("arguments", "cure"),
     [
         ({"threshold": 0.0}, "threshold > 0"),
+        ({"threshold": (0.1, 0.6)}, "lower < 0 < upper"),
         ({"p": -1.0}, "p > 0"),
         ({"method": "montecarlo"}, "monte_carlo"),
+        ({"method": "asymptotic"}, "no parameter 'paths'"),
         ({"step": -0.1}, "step > 0"),
         ({"paths": 0}, "paths > 0"),
         ({"paths": 1e2}, "whole number"),

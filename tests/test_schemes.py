@@ -194,7 +194,7 @@ class TestStability:
         """N = 1e6 with h = 0.05: moments stay those of a confined oscillator."""
         scene = ns.Scene(model, noise, n=n, potential="x**2/2", observable="x")
         panel = new_panel(scene, 7, 0)
-        march(coefficients(scene, "strang", 0.05), panel, BLOCK, 1000, np.inf)
+        march(coefficients(scene, "strang", 0.05), panel, BLOCK, 1000, -np.inf, np.inf)
         y, x = panel.data[list(STATE)[2:], :BLOCK]
         # the variance of y is at most that of the forced linear oscillator, below 2; six times
         # its root covers the block's samples
@@ -216,7 +216,7 @@ class TestStability:
                     50.0  # so far that overshooting the dead zone does not save it
                 )
                 s = SCHEMES[name].module.coefficients(scene, h)
-                march(s, panel, BLOCK, 2000, np.inf)
+                march(s, panel, BLOCK, 2000, -np.inf, np.inf)
                 bounded = np.max(np.abs(panel.data[list(STATE), :BLOCK])) < 100
                 assert bounded == stable
 
@@ -227,7 +227,7 @@ class TestStability:
         s, squares = coefficients(scene, "strang", 0.1), []
         for block in range(40):
             panel = new_panel(scene, 4, block)
-            march(s, panel, BLOCK, 200, np.inf)
+            march(s, panel, BLOCK, 200, -np.inf, np.inf)
             squares.append(panel.data[Y, :BLOCK].astype(float) ** 2)
         # inside a contact part of the energy is elastic: those lanes have |x| > 1
         mean, error = np.mean(squares), np.std(squares) / np.sqrt(np.size(squares))

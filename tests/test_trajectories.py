@@ -241,9 +241,8 @@ def test_halved_steps_run_on_the_same_path(noise):
     scene = ns.Scene("obstacle", noise, observable="eta")
     fine, coarse = (coefficients(scene, "strang", h, "float64") for h in (0.1, 0.2))
     panels = [new_panel(scene, 1, 0, "float64") for _ in range(2)]
-    march_pair(
-        fine, on_given_increments(coarse), *panels, 100, 7, np.inf, 0.0, np.full((2, 100), np.inf)
-    )
+    passage = np.full((2, 100), np.inf)
+    march_pair(fine, on_given_increments(coarse), *panels, 100, 7, -np.inf, np.inf, 0.0, passage)
     noises = [panel.data[[ZETA, ETA], :100] for panel in panels]
     assert np.std(noises[0][1]) > 0.1
     assert np.allclose(*noises, rtol=0, atol=1e-12)

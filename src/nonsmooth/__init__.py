@@ -8,11 +8,16 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "brownian": ["brownian_crossing"],
+        "brownian": [
+            "brownian_crossing",
+            "brownian_first_passage_density",
+            "brownian_survival",
+        ],
         "crossing": ["crossing_probability"],
         "density": ["invariant_density"],
         "errors": ["NonsmoothError"],
         "estimate": ["Estimate"],
+        "milne": ["extrapolation_length"],
         "noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],
         "scene": ["Scene"],
         "spectral_gap": ["spectral_gap"],

@@ -1,4 +1,9 @@
-"""Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b)."""
+"""Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b).
+
+A threshold is a number b, for both sides, or a pair (lower, upper): see `thresholds.bounds`.
+"""
+
+import inspect
 
 import numpy as np
 import scipy
@@ -6,10 +11,13 @@ import xarray as xr
 
 from nonsmooth import schemes
 from nonsmooth.brownian import asymptotic_crossing
+from nonsmooth.corrected import corrected_crossing
 from nonsmooth.errors import SceneError
+from nonsmooth.first_passage import spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
+from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
     PILOT_PATHS,
@@ -45,15 +53,15 @@ def first_passage_counts(
     scheme="strang",
     precision="float32",
 ):
-    """Count the paths that cross sqrt(p) b in each interval between the horizons p T.
+    """Count the paths that cross sqrt(p) times the threshold between the horizons p T.
 
     A path is dropped once it has crossed.
 
     Parameters
     ----------
     scene : Scene
-    threshold : float
-        b, "1".
+    threshold : float or (float, float)
+        b or its lower and upper level, "1".
     horizons : array_like, shape (k,)
         Increasing T > 0, "1".
     p : float
@@ -66,7 +74,13 @@ def first_passage_counts(
     Returns
     -------
     numpy.ndarray of int, shape (k,)
+
+    Raises
+    ------
+    SceneError
+        If a parameter is out of range or a path diverges.
     """
+    levels = np.sqrt(p) * np.array(bounds(threshold))
     grid = [
         (steps, schemes.coefficients(scene, scheme, h, precision))
         for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), step)
@@ -77,7 +91,7 @@ def first_passage_counts(
         panel = new_panel(scene, seed, block, precision)
         left = [lanes]
         for steps, s in grid:
-            left.append(march(s, panel, left[-1], steps, np.sqrt(p) * threshold))
+            left.append(march(s, panel, left[-1], steps, *levels))
         # a path that diverges never crosses
         require_finite([panel.total[TOTAL_DELTA, : left[-1]]])
         return -np.diff(left)
@@ -101,7 +115,8 @@ def first_passage_bias(scene, threshold, horizons, p, step, paths, seed, threads
         Of the probability with the longer step, with its standard error.
     """
     times = p * np.asarray(horizons, dtype=float)
-    _, (fine, coarse) = coupled(scene, times, step, paths, seed, threads, np.sqrt(p) * threshold)
+    levels = np.sqrt(p) * np.array(bounds(threshold))
+    _, (fine, coarse) = coupled(scene, times, step, paths, seed, threads, levels)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
     factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
     # where no path changed sides, as if one had
@@ -126,9 +141,8 @@ def first_passage_shift(scene, threshold, horizon, p, step, paths, seed, threads
     numpy.ndarray, shape (3,)
         Sums over the paths of the powers 0 to 2 of log(time with step / time with step/2).
     """
-    _, (fine, coarse) = coupled(
-        scene, [p * horizon], step, paths, seed, threads, np.sqrt(p) * threshold
-    )
+    levels = np.sqrt(p) * np.array(bounds(threshold))
+    _, (fine, coarse) = coupled(scene, [p * horizon], step, paths, seed, threads, levels)
     both = np.isfinite(fine) & np.isfinite(coarse)
     ratio = np.log(coarse[both] / fine[both])
     return np.array([len(ratio), ratio.sum(), np.sum(ratio**2)])
@@ -164,37 +178,45 @@ def crossing_probability(
     horizons,
     p=1.0,
     method="monte_carlo",
-    tol=1e-2,
+    tol=None,
     step=None,
     paths=None,
     seed=0,
-    precision="float32",
+    precision=None,
     threads=None,
+    order=None,
 ):
-    """Probability that |int_0^t g| reaches sqrt(p) b before p T.
+    """Probability that int_0^t g leaves an interval before p T.
 
     Parameters
     ----------
     scene : Scene
-    threshold : float
-        b > 0, "1".
+    threshold : float or (float, float)
+        b > 0: the interval is (-sqrt(p) b, sqrt(p) b). Or lower < 0 < upper, one of which may be
+        infinite: it is (sqrt(p) lower, sqrt(p) upper). "1".
     horizons : array_like, shape (k,)
         Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem, > 0.
-    method : {"monte_carlo", "asymptotic"}
-        ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent).
-    tol : float
-        Absolute error wanted of ``"monte_carlo"``: it decides, unless given, on the number of
-        paths (two standard errors are at most `tol`) and on the time step (its bias is half).
+    method : {"monte_carlo", "spectral", "asymptotic", "corrected"}
+        ``"spectral"`` is deterministic, for one state variable and white noise.
+        ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
+        ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`.
+    tol : float, optional
+        Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
+        given, on the number of paths (two standard errors are at most `tol`) and on the time
+        step (its bias is half). ``"spectral"``: 1e-7 unless given. The formulas have none.
     step : float, optional
-        Longest time step, "1".
+        Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
-        Number of paths.
+        Number of paths; ``"monte_carlo"`` only.
     seed : int or tuple
-    precision : {"float32", "float64"}
+    precision : {"float32", "float64"}, optional
+        ``"monte_carlo"`` only; ``"float32"`` unless given.
     threads : int, optional
         All cores unless given.
+    order : {1, 2}, optional
+        Of ``"corrected"``; 1 unless given.
 
     Returns
     -------
@@ -202,67 +224,109 @@ def crossing_probability(
         Over `horizon`: `probability` and `probability_error`, for ``"monte_carlo"`` the
         standard error, with the 95 % confidence limits `lower` and `upper`, and `step_bias`, the
         bias of the time step as measured by halving it, with its standard error
-        `step_bias_error`; for ``"asymptotic"`` the error inherited from gamma^2 only, not the
-        distance to the finite-p probability.
+        `step_bias_error`; for ``"spectral"`` the difference of two resolutions, with `survival`
+        and `survival_error`, the complement to relative accuracy; for the formulas the error
+        inherited from gamma^2 and the other constants only, not the distance to the finite-p
+        probability.
 
     Raises
     ------
     SceneError
-        If a parameter is out of range or the method unknown, or if the asymptotic formula is
-        asked for a g whose stationary mean is not 0.
+        If a parameter is out of range, the method unknown or without such a parameter, or if the
+        asymptotic formula is asked for a g whose stationary mean is not 0.
     """
-    for name, value in (("threshold", threshold), ("p", p), ("tol", tol)):
-        require_positive(name, value)
+    threshold = bounds(threshold)
     horizons = np.atleast_1d(np.asarray(horizons, dtype=float))
     require_increasing("horizons", horizons)
-    attributes = {}
-    if method == "monte_carlo":
-        paths = int(np.ceil(1 / tol**2)) if paths is None else paths
-        require_count("paths", paths)
-        fewer = min(paths, max(PILOT_PATHS, paths // 8))
-        problem = (scene, threshold, horizons, p)
-        if step is None:
-            step = coarse_step(scene)
-            bias, error = first_passage_bias(
-                *problem, step, fewer, labelled(seed, "pilot"), threads
-            )
-            worst = np.max(np.abs(bias) + error)
-            step = refined_step(step, worst, tol / 2, schemes.scheme(scene).weak_order(scene))
-        require_positive("step", step)
-        crossed = first_passage_counts(
-            *problem, step, paths, seed, threads=threads, precision=precision
-        )
-        values = crossing_estimate(np.cumsum(crossed), paths)
-        values["step_bias"], values["step_bias_error"] = first_passage_bias(
-            *problem, step, fewer, labelled(seed, "halving"), threads
-        )
-        attributes = {"step": step, "paths": paths}
-    elif method == "asymptotic":
-        mean, uncertainty = stationary_mean(scene, seed, threads)
-        # beyond two variables a percent, enough for W_star, is sampled faster than solved
-        accuracy, way = {1: (None, "deterministic"), 2: (2e-3, "deterministic")}.get(
-            len(scene.state), (None, "monte_carlo")
-        )
-        gamma2 = asymptotic_variance(scene, accuracy, way, seed, threads)
-        if abs(mean) > max(1e-8 * np.sqrt(gamma2.value), 5 * uncertainty):
-            raise SceneError(
-                f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
-                f"{mean:.10g}; subtract it from g"
-            )
-        values = dict(
-            zip(
-                ("probability", "probability_error"),
-                asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error),
-                strict=True,
-            )
-        )
-    else:
-        raise SceneError(f"unknown method {method!r}; choose 'monte_carlo' or 'asymptotic'")
+    require_positive("p", p)
+    if tol is not None:
+        require_positive("tol", tol)
+    if method not in METHODS:
+        raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
+    options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
+    given = {name: value for name, value in options.items() if value is not None}
+    for name in given:
+        if name not in inspect.signature(METHODS[method]).parameters:
+            raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
+    values, attributes = METHODS[method](
+        scene, threshold, horizons, p, seed=seed, threads=threads, **given
+    )
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
         attrs=attributes,
     )
+
+
+def _monte_carlo(
+    scene,
+    threshold,
+    horizons,
+    p,
+    seed,
+    threads,
+    tol=1e-2,
+    step=None,
+    paths=None,
+    precision="float32",
+):
+    """Count paths; the step and the number of paths follow from `tol` unless given."""
+    paths = int(np.ceil(1 / tol**2)) if paths is None else paths
+    require_count("paths", paths)
+    fewer = min(paths, max(PILOT_PATHS, paths // 8))
+    problem = (scene, threshold, horizons, p)
+    if step is None:
+        step = coarse_step(scene)
+        bias, error = first_passage_bias(*problem, step, fewer, labelled(seed, "pilot"), threads)
+        worst = np.max(np.abs(bias) + error)
+        step = refined_step(step, worst, tol / 2, schemes.scheme(scene).weak_order(scene))
+    require_positive("step", step)
+    crossed = first_passage_counts(
+        *problem, step, paths, seed, threads=threads, precision=precision
+    )
+    values = crossing_estimate(np.cumsum(crossed), paths)
+    values["step_bias"], values["step_bias_error"] = first_passage_bias(
+        *problem, step, fewer, labelled(seed, "halving"), threads
+    )
+    return values, {"step": step, "paths": paths}
+
+
+def _asymptotic(scene, threshold, horizons, p, seed, threads):
+    """W_star(b / gamma, T), which does not depend on p."""
+    mean, uncertainty = stationary_mean(scene, seed, threads)
+    # beyond two variables a percent, enough for W_star, is sampled faster than solved
+    accuracy, way = {1: (None, "deterministic"), 2: (2e-3, "deterministic")}.get(
+        len(scene.state), (None, "monte_carlo")
+    )
+    gamma2 = asymptotic_variance(scene, accuracy, way, seed, threads)
+    if abs(mean) > max(1e-8 * np.sqrt(gamma2.value), 5 * uncertainty):
+        raise SceneError(
+            f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
+            f"{mean:.10g}; subtract it from g"
+        )
+    value, error = asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error)
+    return {"probability": value, "probability_error": error}, {}
+
+
+def _spectral(scene, threshold, horizons, p, seed, threads, tol=1e-7):
+    lower, upper = np.sqrt(p) * np.array(threshold)
+    return spectral_crossing(scene, lower, upper, p * horizons, tol), {}
+
+
+def _corrected(scene, threshold, horizons, p, seed, threads, order=1):
+    value, error = corrected_crossing(scene, *threshold, horizons, p, order)
+    return {"probability": value, "probability_error": error}, {}
+
+
+# Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
+# the other parameters of `crossing_probability` that it has; it returns the variables over the
+# horizons, as a dict, and the attributes.
+METHODS = {
+    "monte_carlo": _monte_carlo,
+    "spectral": _spectral,
+    "asymptotic": _asymptotic,
+    "corrected": _corrected,
+}
 
 
 def crossing_estimate(crossed, paths):

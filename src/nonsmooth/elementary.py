@@ -101,20 +101,28 @@ maximum = _extremum(">", "The larger number; x if either is not a number.")
 minimum = _extremum("<", "The smaller number; x if either is not a number.")
 
 
-@intrinsic
-def larger(typing, x, y):
-    """Return the larger number, the other one if one is not a number.
+def _extreme_number(name, documentation):
+    """Declare the choice of the one that is a number, which `maximum` and `minimum` are not.
 
-    Unlike `maximum` it stays one instruction where the result is stored in the place of x.
+    Unlike these it stays one instruction where the result is stored in the place of x.
     """
 
-    def generate(context, builder, signature, arguments):
-        kind = arguments[0].type
-        signature = ir.FunctionType(kind, [kind, kind])
-        function = builder.module.declare_intrinsic("llvm.maxnum", [kind], signature)
-        return builder.call(function, arguments)
+    @intrinsic
+    def extreme(typing, x, y):
+        def generate(context, builder, signature, arguments):
+            kind = arguments[0].type
+            signature = ir.FunctionType(kind, [kind, kind])
+            function = builder.module.declare_intrinsic(name, [kind], signature)
+            return builder.call(function, arguments)
 
-    return x(x, x), generate
+        return x(x, x), generate
+
+    extreme.__doc__ = documentation
+    return extreme
+
+
+larger = _extreme_number("llvm.maxnum", "The larger number, the other if one is not a number.")
+smaller = _extreme_number("llvm.minnum", "The smaller number, the other if one is not a number.")
 
 
 @intrinsic

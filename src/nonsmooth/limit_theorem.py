@@ -8,7 +8,7 @@ a standard normal variable and max_{t <= 1} |Xi_p(t)|/gamma to the maximum of |W
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from nonsmooth.brownian import brownian_crossing
+from nonsmooth.brownian import brownian_survival
 from nonsmooth.panel import PEAK, TOTAL_DELTA
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import over_blocks
@@ -54,7 +54,7 @@ def normal_law(value):
 
 def maximum_law(value):
     """Distribution function of max_{t <= 1} |W(t)| at positive values, 1 - W_star."""
-    return 1 - brownian_crossing(value, 1.0)
+    return brownian_survival(value, 1.0)
 
 
 def kolmogorov_distance(sample, law):

@@ -6,7 +6,18 @@ from numba.extending import intrinsic, overload
 
 from nonsmooth.elementary import fma, like
 from nonsmooth.kernels import inlined, kernel
-from nonsmooth.panel import BASE, BEFORE, DELTA, FLUSH, ROWS, WIDTH, flush, observe, retire
+from nonsmooth.panel import (
+    BASE,
+    BEFORE,
+    DELTA,
+    FLUSH,
+    ROWS,
+    WIDTH,
+    flush,
+    follow_extremes,
+    observe,
+    retire,
+)
 from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, strang
 from nonsmooth.streams import normals
 
@@ -57,8 +68,8 @@ def _of_known_shape(panel):
 
 
 @kernel
-def march(s, panel, lanes, steps, threshold):
-    """Advance the paths of a panel; paths whose |int g| reaches the threshold are dropped.
+def march(s, panel, lanes, steps, lower, upper):
+    """Advance the paths of a panel; paths whose int g reaches one of the levels are dropped.
 
     Parameters
     ----------
@@ -68,8 +79,9 @@ def march(s, panel, lanes, steps, threshold):
     lanes : int
         Number of paths.
     steps : int
-    threshold : float
-        Looked at after every `FLUSH` steps and at the end, for the extremes of all steps.
+    lower, upper : float
+        Levels, infinite if there are none; looked at after every `FLUSH` steps and at the end,
+        for the extremes of all steps.
 
     Returns
     -------
@@ -90,15 +102,17 @@ def march(s, panel, lanes, steps, threshold):
                 normal = 0
             _kick(s, data, normal, lanes)
             normal += s.normals
+        if lower != -upper:  # otherwise max |int g|, which every step has, is enough
+            follow_extremes(data, lanes)
         if (k + 1) % FLUSH == 0 or k == steps:
             flush(data, total, lanes)
-            if threshold < np.inf:
-                lanes = retire(words, data, total, lanes, threshold)
+            if lower > -np.inf or upper < np.inf:
+                lanes = retire(words, data, total, lanes, lower, upper)
     return lanes
 
 
 @kernel
-def march_pair(fine, coarse, panel, other, lanes, steps, threshold, began, passage):
+def march_pair(fine, coarse, panel, other, lanes, steps, lower, upper, began, passage):
     """Advance two panels on the same noise, the second with steps twice as long.
 
     Parameters
@@ -111,11 +125,12 @@ def march_pair(fine, coarse, panel, other, lanes, steps, threshold, began, passa
         Number of paths.
     steps : int
         Of the coarse paths.
-    threshold : float
+    lower, upper : float
+        Levels, infinite if there are none.
     began : float
         Time of the first step.
     passage : array, shape (2, l)
-        Times at which |int g| first reaches the threshold, of the fine and of the coarse paths,
+        Times at which int g first reaches one of the levels, of the fine and of the coarse paths,
         interpolated within a step; inf before.
     """
     words, data, total = _of_known_shape(panel)
@@ -143,22 +158,22 @@ def march_pair(fine, coarse, panel, other, lanes, steps, threshold, began, passa
                 joined[0, i] = fma(a, early, fma(b, also, fma(e, first, early)))
                 joined[1, i] = fma(c, early, fma(d, also, fma(f, first, fma(g, second, also))))
             _kick(fine, data, normal, lanes)
-            _note_passage(
-                data, passage[0], lanes, threshold, now + fine.step if odd else now, fine.step
-            )
+            start = now + fine.step if odd else now
+            _note_passage(data, passage[0], lanes, lower, upper, start, fine.step)
             if odd:
                 _kick(coarse, joined, 0, lanes)
-                _note_passage(joined, passage[1], lanes, threshold, now, coarse.step)
+                _note_passage(joined, passage[1], lanes, lower, upper, now, coarse.step)
         if (k + 1) % FLUSH == 0 or k == 2 * steps:
             flush(data, total, lanes)
             flush(joined, other_total, lanes)
 
 
 @inlined
-def _note_passage(data, passage, lanes, threshold, now, step):
-    """Record the paths that have reached the threshold within a step."""
+def _note_passage(data, passage, lanes, lower, upper, now, step):
+    """Record the paths that have reached one of the levels within a step."""
     for i in range(lanes):
-        before, after = data[BEFORE, i], abs(data[BASE, i] + data[DELTA, i])
-        if after >= threshold and before < threshold and passage[i] == np.inf:
-            passage[i] = now + step * (threshold - before) / (after - before)
+        before, after = data[BEFORE, i], data[BASE, i] + data[DELTA, i]
+        if (after >= upper or after <= lower) and passage[i] == np.inf:
+            level = upper if after >= upper else lower
+            passage[i] = now + step * (level - before) / (after - before)
         data[BEFORE, i] = after

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonsmooth.elementary import larger
+from nonsmooth.elementary import larger, smaller
 from nonsmooth.kernels import inlined, kernel
 from nonsmooth.models import STATE_VARIABLES
 from nonsmooth.streams import BLOCK, generator_words
@@ -22,11 +22,11 @@ WIDTH = 1008
 
 # Rows of `data`: four normal numbers, the state, scratch, what the step adds to int g, and
 # since the last flush int g, its martingale part and that part's quadratic variation; int g at
-# the last flush, max |int g|, and |int g| one step earlier.
+# the last flush, max |int g|, int g one step earlier, and its extremes where these are followed.
 STATE = ZETA, ETA, Y, X = 4, 5, 6, 7
 WORK = 8
-GAIN, DELTA, MARTINGALE, VARIATION, BASE, PEAK, BEFORE = range(16, 23)
-ROWS = 23
+GAIN, DELTA, MARTINGALE, VARIATION, BASE, PEAK, BEFORE, LOW, HIGH = range(16, 25)
+ROWS = 25
 # Rows of `total`: int g, martingale and variation up to the last flush.
 TOTAL_DELTA, TOTAL_MARTINGALE, TOTAL_VARIATION = range(3)
 
@@ -97,16 +97,28 @@ def flush(data, total, lanes):
         data[BASE, i] = total[TOTAL_DELTA, i]
 
 
+@inlined
+def follow_extremes(data, lanes):
+    """Keep track of the smallest and the largest int g, after `observe`."""
+    for i in range(lanes):
+        value = data[BASE, i] + data[DELTA, i]
+        data[LOW, i] = smaller(data[LOW, i], value)
+        data[HIGH, i] = larger(data[HIGH, i], value)
+
+
 @kernel
-def retire(words, data, total, lanes, threshold):
-    """Drop the lanes whose |int g| has reached the threshold; return how many are left.
+def retire(words, data, total, lanes, lower, upper):
+    """Drop the lanes whose int g has reached one of the levels; return how many are left.
 
     A path that has left every bound stays, so that it is seen at the end. The last lane takes the
     place of a dropped one, so that those left stay side by side.
     """
+    symmetric = lower == -upper
     i = 0
     while i < lanes:
-        if threshold <= data[PEAK, i] < np.inf:
+        low = -data[PEAK, i] if symmetric else data[LOW, i]
+        high = data[PEAK, i] if symmetric else data[HIGH, i]
+        if (low <= lower or high >= upper) and -np.inf < low and high < np.inf:
             lanes -= 1
             words[:, i] = words[:, lanes]
             data[:, i] = data[:, lanes]

@@ -301,11 +301,11 @@ def _edges(problem):
     if problem.depth(end) > _DEEPEST:
         end = brentq(lambda y: problem.depth(y) - _DEEPEST, 0.0, end)
     edges = _apart([-end, -problem.knot, 0.0, problem.knot, end], end)
-    switches = [vectorised(f, (models.y,)) for f in _switches(problem.varying)]
+    functions = [vectorised(f, (models.y,)) for f in switches(problem.varying)]
     while True:  # edges may bring to light kinks that were too close together
         while np.any(steep := np.abs(np.diff(problem.depth(edges))) > _STEEPEST):
             edges = np.sort(np.append(edges, (edges[:-1] + edges[1:])[steep] / 2))
-        grown = _apart(np.concatenate([edges, *(_sign_changes(f, edges) for f in switches)]), end)
+        grown = _apart(np.concatenate([edges, *(sign_changes(f, edges) for f in functions)]), end)
         if len(grown) == len(edges) or len(grown) > _MOST:
             return edges
         edges = grown
@@ -317,7 +317,7 @@ def _apart(edges, end):
     return edges[np.append(True, np.diff(edges) > 8 * _EPS * np.abs(edges[1:]))]
 
 
-def _switches(expression):
+def switches(expression):
     """Expressions at whose sign changes g may have a kink, a jump or a pole."""
     differences = [f.lhs - f.rhs for f in expression.atoms(sympy.core.relational.Relational)]
     for f in expression.atoms(sympy.Max, sympy.Min):
@@ -327,7 +327,7 @@ def _switches(expression):
     return [f for f in dict.fromkeys(differences) if f.free_symbols == {models.y}]
 
 
-def _sign_changes(function, edges):
+def sign_changes(function, edges):
     """Bisect all sign changes between neighbours of the edges and Gauss points at once."""
     half = np.diff(edges)[:, None] / 2
     points = np.sort(np.append(edges, edges[:-1, None] + half * (_NODES + 1)))

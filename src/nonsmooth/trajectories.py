@@ -16,6 +16,8 @@ from nonsmooth.panel import STATE, TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
 from nonsmooth.times import equal_steps
 
+_EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
+
 
 def parallel(work, jobs, threads=None):
     """Map `work` over `jobs` on `threads` threads (default: all cores); results in order."""
@@ -112,7 +114,7 @@ def over_blocks(scene, grid, paths, seed, reduce, first_path, threads, scheme, p
         panel = new_panel(scene, seed, block, precision)
         kept = []
         for steps, h in grid:
-            march(coefficients[h], panel, count, steps, np.inf)
+            march(coefficients[h], panel, count, steps, *_EVERYWHERE)
             kept.append(reduce(panel, count))
         return np.array(kept)
 
@@ -149,7 +151,7 @@ def coupled(
     paths,
     seed,
     threads=None,
-    threshold=np.inf,
+    levels=_EVERYWHERE,
     scheme="strang",
     precision="float32",
 ):
@@ -161,8 +163,8 @@ def coupled(
         As for `gram`.
     step : float
         The longer of the two steps, "1".
-    threshold : float
-        Whose first passage by |D| is timed.
+    levels : (float, float)
+        Lower and upper level whose first passage by D is timed.
 
     Returns
     -------
@@ -186,7 +188,7 @@ def coupled(
         began = 0.0
         for k, ((steps, h), (fine, coarse)) in enumerate(zip(grid, pairs, strict=True)):
             given = schemes.on_given_increments(coarse)
-            march_pair(fine, given, panel, other, count, steps, threshold, began, passage)
+            march_pair(fine, given, panel, other, count, steps, *levels, began, passage)
             began += steps * h
             half, whole = panel.total[TOTAL_DELTA, :count], other.total[TOTAL_DELTA, :count]
             vector[1:] = whole - half, whole**2 - half**2, half

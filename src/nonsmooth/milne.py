@@ -1,0 +1,169 @@
+"""The Milne problem at a threshold, and the constants of the corrected asymptotic formula.
+
+A q + g d_x q = 0 for x < 0, q = 0 at x = 0 where g > 0, and q ~ kappa - x - u as x -> -inf, u the
+Poisson solution of g: int g, which is differentiable, behaves towards a threshold b like a Brownian
+motion towards b + kappa.
+"""
+
+import time
+from dataclasses import astuple, dataclass
+
+import numpy as np
+import scipy.linalg
+
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.estimate import Estimate
+from nonsmooth.ordinates import ordinates
+from nonsmooth.poisson import EVEN, ODD
+from nonsmooth.spectral import applies
+
+_DEGREES = (7, 9, 11, 13, 15, 17, 20)
+_UNHURRIED = 1e3  # a time beyond which the grid no longer depends on it, in units of 1 / C_b
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Constants of the expansion in p^(-1/2), of a self-adjoint generator and odd g.
+
+    Attributes
+    ----------
+    diffusion : float
+        D = gamma^2 / 2.
+    length : float
+        kappa, the extrapolation length.
+    dispersion : float
+        B = E[g r]: long waves decay at the rate D k^2 - B k^4 / p.
+    corner : float
+        S, the dipole that the start of time leaves at the thresholds.
+    poisson, start : float
+        u and h at the start; A u = -g, A h = D - g u.
+    """
+
+    diffusion: float
+    length: float
+    dispersion: float
+    corner: float
+    poisson: float
+    start: float
+
+
+def extrapolation_length(scene, tol=1e-8):
+    """Distance kappa by which the threshold of the Brownian limit lies beyond the scene's.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the state y, white noise, and odd g: kappa is then the same at both thresholds.
+    tol : float
+        Absolute error wanted, "1".
+
+    Returns
+    -------
+    Estimate
+        The error is the difference of two polynomial degrees.
+
+    Raises
+    ------
+    SceneError
+        If the scene is of another kind.
+    ToleranceError
+        If `tol` is not met; the message has the best value and its error.
+    """
+    began = time.perf_counter()
+    constants, errors = expansion(scene, tol)
+    return Estimate(
+        constants.length, errors.length, "discrete ordinates", time.perf_counter() - began
+    )
+
+
+def expansion(scene, tol=1e-8):
+    """Compute the constants of the corrected asymptotic formula.
+
+    Parameters
+    ----------
+    scene, tol
+        As for `extrapolation_length`; `tol` is the absolute error wanted of all constants.
+
+    Returns
+    -------
+    constants, errors : Expansion
+
+    Raises
+    ------
+    SceneError, ToleranceError
+        As `extrapolation_length`.
+    """
+    if not (applies(scene) and scene.is_odd()):
+        raise SceneError(
+            f"the extrapolation length is computed for the state (y), white noise and odd g, not "
+            f"for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
+            f"{scene.observable!r}; choose such a scene"
+        )
+    values = _expansion(scene, _DEGREES[0])
+    for degree in _DEGREES[1:]:
+        previous, values = values, _expansion(scene, degree)
+        errors = np.abs(np.subtract(astuple(values), astuple(previous)))
+        if errors.max() <= tol:
+            return values, Expansion(*(float(error) for error in errors))
+    raise ToleranceError(
+        f"kappa = {values.length:.10g} and the other constants have errors up to "
+        f"{errors.max():.1e}, above tol = {tol:g}; loosen tol"
+    )
+
+
+def _expansion(scene, degree):
+    """Solve the Milne problem by the modes that decay as x -> -inf; 1 and x + u are apart.
+
+    Modes (e + o) exp(mu x) of even e = a + psi, psi = 0 at the origin, and odd o satisfy
+    K_o o = mu M g e, K_e psi = mu M g o, and carry no flux, E[g o] = 0, which fixes a. With
+    Cholesky factors of the stiffness matrices they are the singular vectors of one matrix, and
+    1/mu its singular values.
+    """
+    grid = ordinates(scene, degree, _UNHURRIED / scene.damping)
+    inner = slice(1, None)  # without the origin
+    kept = np.flatnonzero(grid.g[inner])
+    g, weights = grid.g[inner], grid.masses[inner]
+    odd, even = (
+        scipy.linalg.cholesky(grid.stiffness[parity][inner, inner], lower=True)
+        for parity in (ODD, EVEN)
+    )
+
+    def forward(factor, values):
+        return scipy.linalg.solve_triangular(factor, values, lower=True)
+
+    def backward(factor, values):
+        return scipy.linalg.solve_triangular(factor, values, lower=True, trans="T")
+
+    flux = forward(odd, weights * g)
+    u = backward(odd, flux)
+    diffusion = flux @ flux
+    coupling = forward(even, forward(odd, np.diag(weights * g)).T).T
+    complement = scipy.linalg.qr(flux[:, None])[0][:, 1:]
+    left, inverses, right = scipy.linalg.svd(complement.T @ coupling, full_matrices=False)
+    used = len(kept) - 1
+    inverses = inverses[:used]
+    odd_parts = backward(odd, complement @ left[:, :used])
+    even_parts = backward(even, right[:used].T)
+    constant = -(flux @ coupling @ right[:used].T) / diffusion
+    leaving = constant + even_parts + np.sign(g)[:, None] * odd_parts
+    rows = np.sqrt(weights[kept])
+    solution = np.linalg.solve(
+        rows[:, None] * np.column_stack([np.ones(len(kept)), leaving[kept]]),
+        rows * (np.sign(g) * u)[kept],
+    )
+    length, strengths = solution[0], solution[1:]
+    layer = strengths * inverses * (constant + weights @ even_parts)
+
+    def centred_even(values):
+        return grid.resolvent(0.0, EVEN, values[:, None])[:, 0]
+
+    h = centred_even(np.append(0.0, g * u))
+    r = grid.resolvent(0.0, ODD, np.append(0.0, g * h[inner] - diffusion * u)[:, None])[inner, 0]
+    return Expansion(
+        float(diffusion),
+        float(length),
+        float(np.sum(weights * g * r)),
+        float(np.sum(weights * u**2) - length**2 / 2 + layer.sum()),
+        float(grid.start[ODD][inner] @ u),
+        float(grid.start[EVEN] @ h),
+    )

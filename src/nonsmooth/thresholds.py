@@ -1,0 +1,42 @@
+"""The levels whose crossing is asked for: one number for both sides, or one level for each."""
+
+import numpy as np
+
+from nonsmooth.errors import SceneError
+
+
+def bounds(threshold):
+    """Return the lower and the upper level of a threshold.
+
+    Parameters
+    ----------
+    threshold : float or (float, float)
+        A number b > 0 stands for -b and b, a pair for its lower and upper level, "1":
+        lower < 0 < upper, one of which may be infinite (a one-sided threshold).
+
+    Returns
+    -------
+    lower, upper : float
+
+    Raises
+    ------
+    SceneError
+        If it is neither, or nothing can cross it.
+    """
+    try:
+        levels = np.asarray(threshold, dtype=float)
+    except (TypeError, ValueError):
+        levels = np.empty(0)
+    if levels.shape not in ((), (2,)):
+        raise SceneError(
+            f"a threshold is a number or a pair (lower, upper), got {threshold!r}; choose one"
+        )
+    lower, upper = (-levels, levels) if levels.shape == () else levels
+    if not lower < 0 < upper:
+        raise SceneError(
+            f"a crossing needs threshold > 0, or lower < 0 < upper, got {threshold!r}; "
+            "choose levels on both sides of the start, 0"
+        )
+    if lower == -np.inf and upper == np.inf:
+        raise SceneError(f"no path crosses threshold = {threshold!r}; choose a finite level")
+    return float(lower), float(upper)

@@ -1,0 +1,137 @@
+"""First passage of x' = g out of an interval by Case's elementary solutions, exact in x.
+
+The Laplace transform h(x, Z) = E exp(-z tau) of the exit time of x + int g solves
+(z - A) h = g d_x h with h = 1 where the flow leaves: at the upper wall where g > 0, at the lower
+where g < 0. It is a sum of modes phi exp(mu x) with (z - A) phi = mu g phi, as many as nodes with
+g != 0; each is scaled by its value at the wall from which it decays.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nonsmooth.errors import ToleranceError
+from nonsmooth.poisson import EVEN, ODD
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes that decay from a wall, at the nodes where the flow leaves there or at the other wall.
+
+    Attributes
+    ----------
+    rates : numpy.ndarray, shape (m,)
+        |Re mu| > 0: `rates` is mu for the upper wall and -mu for the lower.
+    own, other : numpy.ndarray
+        Modes in columns, at the nodes where the flow leaves at their own and at the other wall.
+    start : numpy.ndarray, shape (m,)
+        Their values at the start.
+    """
+
+    rates: np.ndarray
+    own: np.ndarray
+    other: np.ndarray
+    start: np.ndarray
+
+
+def modes(grid, z):
+    """Modes of the upper and of the lower wall; of one half grid, where they are mirror images.
+
+    Parameters
+    ----------
+    grid : Ordinates
+    z : complex
+
+    Returns
+    -------
+    upper, lower : Modes
+    """
+    moving = grid.moving
+    g = grid.g[moving]
+    source = np.zeros((len(grid.g), len(moving)))
+    source[moving, np.arange(len(moving))] = g
+    even = grid.resolvent(z, EVEN, source)
+    balance = np.sqrt(np.abs(g) / grid.masses[moving])
+    if not grid.mirrored:
+        return _of_all(grid, even, balance)
+    odd = grid.resolvent(z, ODD, source)
+    squares, odd_parts = _eigen(odd[moving] @ even[moving], balance * np.sqrt(np.abs(g)))
+    rates = 1 / np.sqrt(squares.astype(complex))
+    rates = np.where(rates.real < 0, -rates, rates)
+    even_parts = rates * (even @ odd_parts)
+    even_start = grid.start[EVEN] @ even_parts
+    odd_start = grid.start[ODD] @ (rates * (odd @ even_parts[moving]))
+    leaving = np.sign(g)[:, None] * odd_parts
+    own, other = even_parts[moving] + leaving, even_parts[moving] - leaving
+    weights = np.sqrt(grid.masses[moving])[:, None]
+    return (
+        Modes(rates, weights * own, weights * other, even_start + odd_start),
+        Modes(rates, weights * own, weights * other, even_start - odd_start),
+    )
+
+
+def _eigen(matrix, balance):
+    values, vectors = np.linalg.eig(matrix / balance[:, None] * balance)
+    return values, vectors * balance[:, None]
+
+
+def _of_all(grid, resolvent, balance):
+    moving = grid.moving
+    inverses, vectors = _eigen(resolvent[moving], balance)
+    rates = 1 / inverses
+    start = grid.start[EVEN] @ (rates * (resolvent @ vectors))
+    vectors = np.sqrt(grid.masses[moving])[:, None] * vectors
+    up, outward = grid.g[moving] > 0, rates.real > 0
+    if np.count_nonzero(up) != np.count_nonzero(outward):
+        raise ToleranceError(
+            "the modes of the transport equation do not separate into those of the two walls; "
+            "loosen tol or use Monte Carlo"
+        )
+    return (
+        Modes(rates[outward], vectors[up][:, outward], vectors[~up][:, outward], start[outward]),
+        Modes(
+            -rates[~outward], vectors[~up][:, ~outward], vectors[up][:, ~outward], start[~outward]
+        ),
+    )
+
+
+def first_passage(grid, z, lower, upper):
+    """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
+
+    Parameters
+    ----------
+    grid : Ordinates
+    z : complex
+    lower, upper : float
+        Of opposite signs; one may be infinite.
+
+    Returns
+    -------
+    complex
+    """
+    above, below = modes(grid, z)
+    weights = np.sqrt(grid.masses[grid.moving])
+    if np.isinf(lower):
+        right = weights if grid.mirrored else weights[grid.g[grid.moving] > 0]
+        return (above.start * np.exp(-above.rates * upper)) @ np.linalg.solve(above.own, right)
+    if np.isinf(upper):
+        right = weights if grid.mirrored else weights[grid.g[grid.moving] < 0]
+        return (below.start * np.exp(below.rates * lower)) @ np.linalg.solve(below.own, right)
+    far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
+    if grid.mirrored:  # both walls see the same
+        strength = np.linalg.solve(above.own + above.other * far_above, weights)
+        strengths = strength, strength
+    else:
+        up = grid.g[grid.moving] > 0
+        strengths = np.split(
+            np.linalg.solve(
+                np.block(
+                    [[above.own, below.other * far_below], [above.other * far_above, below.own]]
+                ),
+                np.concatenate([weights[up], weights[~up]]),
+            ),
+            [np.count_nonzero(up)],
+        )
+    return (above.start * np.exp(-above.rates * upper)) @ strengths[0] + (
+        below.start * np.exp(below.rates * lower)
+    ) @ strengths[1]

@@ -1,0 +1,159 @@
+"""First passage by Case modes, the Milne problem and the corrected formulas."""
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.special import erfc
+
+import nonsmooth as ns
+from nonsmooth.laplace import hyperbola
+from nonsmooth.milne import expansion
+
+FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
+DIGITS = 1e-7  # a unit in the last of seven
+
+
+class TestContour:
+    """The trapezoidal rule on hyperbolas converges geometrically."""
+
+    @pytest.mark.parametrize(("ratio", "count", "rate"), [(1.01, 10, 2.0), (10.0, 24, 0.9)])
+    def test_inverts_to_the_declared_rate(self, ratio, count, rate):
+        """exp(-sqrt z)/z is the transform of erfc(1/(2 sqrt t)); error exp(-rate count)."""
+        contour, times = hyperbola(1.0, ratio, count), np.linspace(1.0, ratio, 7)
+        value = contour.invert(np.exp(-np.sqrt(contour.nodes)) / contour.nodes, times)
+        assert np.max(np.abs(value - erfc(0.5 / np.sqrt(times)))) < np.exp(-rate * count)
+
+
+class TestMilne:
+    """kappa and the constants of order 2 against closed forms."""
+
+    def test_ornstein_uhlenbeck(self):
+        """Without friction kappa = -zeta(1/2) sigma / (sqrt(2) C_b^(3/2)) (Marshall & Watson)."""
+        for damping in (0.3, 1.0, 5.0):
+            scene = ns.Scene("elasto_plastic", potential="0", damping=damping)
+            found = ns.extrapolation_length(scene)
+            exact = -float(mpmath.zeta(0.5)) / np.sqrt(2) / damping**1.5
+            assert abs(found.value - exact) <= found.error + 1e-9
+            assert found.error <= 1e-8
+
+    def test_published_constants(self):
+        """METHODS, section 3, whose D and B are halves of sums with ten digits."""
+        found, errors = expansion(FRICTION)
+        for name, value in (
+            ("diffusion", 0.06884820644975),
+            ("length", 0.2911259630),
+            ("dispersion", 0.00369027612),
+            ("corner", -0.0360711815),
+            ("start", -0.0188637460),
+        ):
+            assert abs(getattr(found, name) - value) < 2e-9, name
+            assert getattr(errors, name) < 1e-8
+
+    @pytest.mark.parametrize("n", [1.0, 1e4, 1e6, np.inf])
+    def test_diffusion_is_half_gamma2(self, n):
+        """D against the quadrature of gamma^2."""
+        found, errors = expansion(FRICTION.with_n(n))
+        gamma2 = ns.asymptotic_variance(FRICTION.with_n(n)).value
+        assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
+
+    def test_refuses_what_it_cannot(self):
+        """Colored noise has no such solver."""
+        with pytest.raises(ns.NonsmoothError, match="white noise and odd g"):
+            ns.extrapolation_length(ns.Scene("friction", "langevin"))
+
+
+def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
+    """Spectral values."""
+    return ns.crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tol)
+
+
+class TestSpectral:
+    """First passage against published values, Monte Carlo, and itself in the tails."""
+
+    @pytest.mark.parametrize(
+        ("p", "value"), [(1, 0.1606775), (10, 0.3674251), (100, 0.4595991), (1000, 0.4902812)]
+    )
+    def test_published_values(self, p, value):
+        """METHODS, section 2."""
+        found = exact(0.6, [2.0], p)
+        assert abs(found.probability[0] - value) < found.probability_error[0] + DIGITS
+
+    def test_monte_carlo_of_one_sided_and_unequal_thresholds(self):
+        """Two comparisons within 4.5 standard errors and the step's bias: false alarms 1e-5."""
+        for threshold in ((-np.inf, 0.6), (-0.3, 0.6)):
+            sample = ns.crossing_probability(
+                FRICTION, threshold, [2.0], 1, paths=40_000, step=0.02, seed=5
+            )
+            bias = np.abs(sample.step_bias) + sample.step_bias_error
+            gap = np.abs(sample.probability - exact(threshold, [2.0], 1).probability)
+            assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    def test_survival_decays_like_its_leading_pole(self):
+        """To relative accuracy, far below the rounding of 1 - W."""
+        survival = exact(0.6, [60.0, 80.0, 100.0], 1000).survival.values
+        assert survival[-1] < 1e-13
+        assert survival[2] / survival[1] == pytest.approx(survival[1] / survival[0], rel=1e-3)
+
+    def test_rare_crossings_are_bounded_or_resolved(self):
+        """Below 1e-14 the bound is the error; above, the error is relative."""
+        found = exact(0.6, [1e-3, 0.05, 0.1], 1e4)
+        assert found.probability[0] == 0
+        assert found.probability_error[0] >= 1e-14
+        assert np.all(np.diff(found.probability) > 0)
+        assert found.probability_error[1] < 1e-3 * found.probability[1] < 1e-10
+
+    def test_other_scenes_are_told_to_sample(self):
+        """The message names the method to use."""
+        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
+            exact(0.6, [1.0], 1, ns.Scene("friction", "langevin"))
+
+
+class TestCorrected:
+    """Errors against the spectral values fall like p^(-1/2), p^(-1), p^(-3/2)."""
+
+    # two decades apart; next orders, e^(1/2) smaller, bend the slopes by less than 0.15
+    P = (100.0, 10_000.0)
+
+    def slope(self, threshold, **formula):
+        """Fit the order between two p."""
+        errors = [
+            abs(
+                float(
+                    ns.crossing_probability(FRICTION, threshold, [2.0], p, **formula).probability[0]
+                    - exact(threshold, [2.0], p, tol=3e-8).probability[0]
+                )
+            )
+            for p in self.P
+        ]
+        return np.log(errors[1] / errors[0]) / np.log(self.P[1] / self.P[0])
+
+    def test_plain(self):
+        """W_star(b / gamma, T)."""
+        assert self.slope(0.6, method="asymptotic") == pytest.approx(-0.5, abs=0.15)
+
+    @pytest.mark.parametrize("threshold", [0.6, (-0.3, 0.6), (-np.inf, 0.6)])
+    def test_first_order(self, threshold):
+        """For every kind of threshold."""
+        assert self.slope(threshold, method="corrected") == pytest.approx(-1, abs=0.15)
+
+    def test_second_order(self):
+        """For equal thresholds."""
+        # the error at p = 1e4, 2e-8, is that of the spectral value: one decade
+        self.P = (30.0, 1000.0)
+        slope = self.slope(0.6, method="corrected", order=2)
+        assert slope == pytest.approx(-1.5, abs=0.3)
+
+    @pytest.mark.parametrize("order", [1, 2])
+    def test_is_a_distribution(self, order):
+        """Between 0 and 1, and monotone in T, at any p."""
+        for p in (1e-3, 1.0, 1e3):
+            value = ns.crossing_probability(
+                FRICTION, 0.6, np.geomspace(1e-3, 1e2, 60), p, method="corrected", order=order
+            ).probability.values
+            assert np.all((value >= 0) & (value <= 1))
+            assert np.all(np.diff(value) >= -1e-9)
+
+    def test_second_order_needs_equal_thresholds(self):
+        """The message names the cure."""
+        with pytest.raises(ns.NonsmoothError, match="order=1"):
+            ns.crossing_probability(FRICTION, (-1, 2), [1.0], method="corrected", order=2)
