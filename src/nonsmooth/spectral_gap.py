@@ -15,7 +15,7 @@ from nonsmooth.poisson import EVEN, ODD
 _WANTED = 6  # eigenvalues computed; the slowest pair may be complex
 _COARSE, _FINEST = 2, 8  # levels
 # relative; against linear scenes it comes to 2e-12, and what moves eigenvalues that coincide apart
-# to a tenth of this
+# to 2e-13
 _ROUNDING, _BACKWARD = 2e-11, 5e-13
 
 
@@ -71,7 +71,7 @@ def spectral_gap(scene, tol=1e-6):
 
 def _of_polynomials(scene, degree):
     rate = float(spectral.spectrum(scene, degree).rates[1])
-    return rate, rate * spectral.rounding(scene, degree)
+    return rate, rate * _ROUNDING
 
 
 def _on(scene, grid):
@@ -86,7 +86,7 @@ def _on(scene, grid):
         start = np.cos(np.arange(size))  # the same in every run
         largest = spla.eigs(inverse, k=_WANTED, v0=start, return_eigenvectors=False)
         rates = 1 / largest[np.abs(largest) > 1e-12]
-        slowest.append(min(((rate.real, _moved(rates, rate)) for rate in rates)))
+        slowest.append(min((rate.real, _moved(rates, rate)) for rate in rates))
     return tuple(map(float, min(slowest)))
 
 

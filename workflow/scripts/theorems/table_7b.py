@@ -29,11 +29,12 @@ def ergodic(ergodicity, scenes):
                 "model": scene.model.replace("_", "-"),
                 "noise": scene.noise.kind,
                 "state": ", ".join(f"${_symbol(name)}$" for name in scene.state),
+                "$g$": f"${scene.observable}$",
                 "spectral gap": _with_error(row.gap, row.gap_error),
-                "rate in the $V$-norm": _with_error(row.rate, row.rate_error),
+                "decay on a box": _with_error(row.rate, row.rate_error),
+                "at infinity": _with_error(row.far, row.far_error),
                 "$C$": scientific(row.bound, 3),
-                "$C$, larger box": scientific(row.enlarged, 3),
-                "its edge": scientific(row.edge, 1),
+                r"$\pm$": scientific(row.bound_error, bound=True),
             }
         )
     return plain, pd.DataFrame(cells)
@@ -44,9 +45,13 @@ def _symbol(name):
 
 
 def _with_error(value, error):
-    """Spell a value and its error, rounded up to one digit, at most six decimals."""
+    """Spell a value and its error, rounded up to one digit, at most six decimals.
+
+    What rounding the value adds is in the error.
+    """
     digits = min(6, max(1, int(np.ceil(-np.log10(error)))))
-    above = np.ceil(error * 10**digits) / 10**digits
+    unit = 10.0**-digits
+    above = unit * np.ceil((error + abs(round(value, digits) - value)) / unit)
     return rf"${value:.{digits}f} \pm {above:.{digits}f}$"
 
 
