@@ -82,8 +82,8 @@ def decay_rate(scene, step=0.1):
     error = abs(slow - coarse) + abs(value - coarse) + _UNSETTLED * abs(value - earlier)
     if not error < value / 2:
         raise ToleranceError(
-            f"P_t f decays at the rate {value:.3g} with an error of {error:.1g}: eigenvalues nearly "
-            "coincide, or the step is too long; take a shorter step or another scene"
+            f"P_t f decays at the rate {value:.3g} with an error of {error:.1g}: the step is too "
+            "long, or eigenvalues nearly coincide; take a shorter step or another scene"
         )
     return Estimate(value, error, "time stepping", time.perf_counter() - began)
 
@@ -161,8 +161,8 @@ def poisson_bound(scene, enlargement=2.0):
     error = abs(constant - coarse) + abs(constant - narrow) + _ROUNDING * constant
     if not error < constant / 2:
         raise ToleranceError(
-            f"|u| / (V + 1) = {constant:.3g} has an error of {error:.1g}: the grid does not resolve "
-            "the narrow valley of V; choose a smaller n"
+            f"|u| / (V + 1) = {constant:.3g} has an error of {error:.1g}: the grid does not "
+            "resolve the narrow valley of V; choose a smaller n"
         )
     return Bound(constant, error, edge)
 

@@ -1,4 +1,4 @@
-"""The rate of V-uniform ergodicity against the spectral gap, and the bound of the Poisson solution."""
+"""Rate of V-uniform ergodicity against the spectral gap, and bound of the Poisson solution."""
 
 from nonsmooth import artifact
 from nonsmooth.ergodicity import decay_rate, poisson_bound, rate_at_infinity
@@ -39,8 +39,8 @@ def measure(scenes, tolerance, step, enlargement):
         gap, rate = spectral_gap(scene, tolerance), decay_rate(scene, step)
         if not abs(rate.value - gap.value) <= rate.error + gap.error:
             raise CheckError(
-                f"{name} forgets its start at the rate {rate.value:.5g} +- {rate.error:.1g}, but its "
-                f"spectral gap is {gap.value:.5g} +- {gap.error:.1g}; one of the two is wrong"
+                f"{name} forgets its start at the rate {rate.value:.5g} +- {rate.error:.1g}, but "
+                f"its spectral gap is {gap.value:.5g} +- {gap.error:.1g}; one of the two is wrong"
             )
         bound = poisson_bound(scene, enlargement)
         if not bound.edge < bound.constant - bound.error:

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from nonsmooth.scene import Scene
-from nonsmooth.tables import scientific, typeset
+from nonsmooth.tables import typeset
 
 
 def ergodic(ergodicity, scenes):
@@ -30,11 +30,10 @@ def ergodic(ergodicity, scenes):
                 "noise": scene.noise.kind,
                 "state": ", ".join(f"${_symbol(name)}$" for name in scene.state),
                 "$g$": f"${scene.observable}$",
-                "spectral gap": _with_error(row.gap, row.gap_error),
-                "decay on a box": _with_error(row.rate, row.rate_error),
-                "at infinity": _with_error(row.far, row.far_error),
-                "$C$": scientific(row.bound, 3),
-                r"$\pm$": scientific(row.bound_error, bound=True),
+                "spectral gap": f"${_with_error(row.gap, row.gap_error)}$",
+                "decay on a box": f"${_with_error(row.rate, row.rate_error)}$",
+                "at infinity": f"${_with_error(row.far, row.far_error)}$",
+                "$C$": _scaled(row.bound, row.bound_error),
             }
         )
     return plain, pd.DataFrame(cells)
@@ -52,7 +51,14 @@ def _with_error(value, error):
     digits = min(6, max(1, int(np.ceil(-np.log10(error)))))
     unit = 10.0**-digits
     above = unit * np.ceil((error + abs(round(value, digits) - value)) / unit)
-    return rf"${value:.{digits}f} \pm {above:.{digits}f}$"
+    return rf"{value:.{digits}f} \pm {above:.{digits}f}"
+
+
+def _scaled(value, error):
+    """Spell a small value and its error with a common power of ten."""
+    exponent = int(np.floor(np.log10(value)))
+    both = _with_error(value / 10.0**exponent, error / 10.0**exponent)
+    return rf"$({both}) \times 10^{{{exponent}}}$"
 
 
 if __name__ == "__main__":
