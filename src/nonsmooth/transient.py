@@ -28,7 +28,7 @@ _COARSE, _FINEST = 2, 9  # levels
 _LARGEST = 45_000  # grid points; each pole keeps its factors in memory
 _MARGIN = 0.15  # of the box, to see whether it matters
 _DEPENDENT = 1e-10  # a function this much smaller without what it shares with others
-_ROUNDING = 1e-11  # relative; against linear scenes it comes to 2e-12
+_ROUNDING = 3e-11  # relative; against linear scenes it comes to 9e-12
 _GROWTH = 1e-12  # relative rate from which on a mode is taken to grow
 _AROUND = 1.25  # the box holds the starting point with so much to spare
 
