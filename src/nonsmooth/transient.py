@@ -18,6 +18,7 @@ import numpy as np
 import scipy.linalg
 
 from nonsmooth import mesh, refinement
+from nonsmooth.errors import ToleranceError
 from nonsmooth.generator import evaluate
 from nonsmooth.poisson import EVEN, ODD
 
@@ -51,8 +52,12 @@ def moments(scene, times, tol):
     moments, errors : numpy.ndarray, shape (2, t)
         w and v. The errors are what the last refinement of the grid changes or, if larger, the sum
         of what its variables change each for itself; to it come the box and the projection. They
-        are infinite if no projection is stable, as on grids that are too coarse. They oscillate with
-        tau, relative to which each is the largest between tau / 2 and 2 tau.
+        oscillate with tau, relative to which each is the largest between tau / 2 and 2 tau.
+
+    Raises
+    ------
+    ToleranceError
+        If no projection is stable.
     """
     wanted, times = times, _with_neighbours(times)
     scale = np.where(times > 0, times, 1.0)
@@ -83,7 +88,11 @@ def moments(scene, times, tol):
     # w is the difference of terms as large as the standard deviation
     w, v = np.abs(last)
     error += _ROUNDING * np.array([w + np.sqrt(v), v + w**2])
-    error = np.nan_to_num(error, nan=np.inf) / scale
+    if not np.all(np.isfinite(error)):
+        raise ToleranceError(
+            "v(tau) has no stable projection on the grids of this scene; use simulate, or another n"
+        )
+    error /= scale
     place = np.searchsorted(times, wanted)
     near = [(times >= tau / 2) & (times <= 2 * tau) for tau in wanted]
     largest = np.transpose([error[:, here].max(axis=1) for here in near])
