@@ -3,7 +3,16 @@
 import sys
 
 from workflow.dependencies import sources
-from workflow.experiment import check, finite, halving_paths, label, part, shards, sweep_halving
+from workflow.experiment import (
+    check,
+    ergodic_scenes,
+    finite,
+    halving_paths,
+    label,
+    part,
+    shards,
+    sweep_halving,
+)
 from nonsmooth.errors import NonsmoothError
 
 

@@ -49,13 +49,21 @@ def check(config):
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
     _check_theorems(config["theorems"])
-    for topic in ("growth", "density", "limit_theorem"):
-        for name in config[topic]["scenes"]:
+    lists = {topic: config[topic]["scenes"] for topic in ("growth", "density", "limit_theorem")}
+    lists["theorems.ergodicity"] = config["theorems"]["ergodicity"]["scenes"]
+    for topic, names in lists.items():
+        for name in names:
             if name not in config["sweep"]["scenes"]:
                 raise ConfigError(
                     f"config: '{topic}.scenes' has {name!r}, which is not a scene of the sweep; "
                     f"choose from {', '.join(config['sweep']['scenes'])}"
                 )
+    for name, parameters in ergodic_scenes(config).items():
+        if len(Scene(**parameters).state) > 2:
+            raise SceneError(
+                f"config: 'theorems.ergodicity.scenes' has {name!r}, which has more than two state "
+                "variables; choose scenes with one or two"
+            )
     p = config["limit_theorem"]["p"]
     if sorted(set(p)) != p:
         raise ConfigError(f"config: 'limit_theorem.p' = {p} must increase; sort them")
@@ -118,6 +126,12 @@ def _divides(part, whole):
 def label(number):
     """Spell a number of the configuration as it stands in file names."""
     return f"{float(number):.17g}"
+
+
+def ergodic_scenes(config):
+    """Parameters of the scenes of table 7b: a dict from names, in the order of the table."""
+    scenes = config["sweep"]["scenes"]
+    return {name: scenes[name]["scene"] for name in config["theorems"]["ergodicity"]["scenes"]}
 
 
 def shards(topic):

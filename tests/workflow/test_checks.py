@@ -12,7 +12,9 @@ from scipy.special import ndtr, ndtri
 from nonsmooth import errata
 from nonsmooth.brownian import brownian_crossing
 from nonsmooth.drift_condition import margins
+from nonsmooth.ergodicity import Bound
 from nonsmooth.errors import CheckError
+from nonsmooth.estimate import Estimate
 from nonsmooth.scene import Scene
 
 TAU = np.array([0.1, 1.0, 10.0])
@@ -22,6 +24,7 @@ evaluate = runpy.run_path(str(SCRIPTS / "errata" / "errata.py"))["evaluate"]
 search = runpy.run_path(str(SCRIPTS / "theorems" / "drift_condition.py"))["search"]
 compare = runpy.run_path(str(SCRIPTS / "crossing" / "check.py"))["compare"]
 distances = runpy.run_path(str(SCRIPTS / "limit_theorem" / "check.py"))["distances"]
+ergodicity = runpy.run_path(str(SCRIPTS / "theorems" / "ergodicity.py"))["measure"]
 deformation = runpy.run_path(str(SCRIPTS / "plasticity" / "check.py"))["compare"]
 
 
@@ -125,6 +128,27 @@ def test_a_violated_bound_fails(monkeypatch):
                 search(*case, points=300, reach=10.0)
         else:
             assert search(*case, points=300, reach=10.0).sizes["case"] == 3
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({}, None),
+        ({"decay_rate": Estimate(2.4, 0.05, "", 0.0)}, r"rate 2.4 \+- 0.05, but"),
+        ({"decay_rate": Estimate(np.nan, 0.05, "", 0.0)}, "one of the two is wrong"),
+        ({"poisson_bound": Bound(0.1, 0.01, 0.095)}, "larger enlargement"),
+    ],
+)
+def test_a_contradicted_theorem_fails(monkeypatch, changes, message):
+    """A rate that is not the spectral gap's; a bound that is attained where the box ends."""
+    scenes = {"friction": {"model": "friction"}}
+    for name, result in changes.items():
+        monkeypatch.setitem(ergodicity.__globals__, name, lambda *_, result=result: result)
+    if message is None:
+        assert ergodicity(scenes, 1e-3, 0.1, 2.0).sizes["scene"] == 1
+    else:
+        with pytest.raises(CheckError, match=message):
+            ergodicity(scenes, 1e-3, 0.1, 2.0)
 
 
 P = np.array([10.0, 100.0, 1000.0])

@@ -6,7 +6,7 @@ FIGURES = [
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *["table_errata", "table_time_step"],
+    *["table_7b", "table_errata", "table_time_step"],
 ]
 
 
@@ -36,6 +36,7 @@ rule values:
         limit=rules.sweep_limit.output[0],
         convergence=rules.table_4.input.spectral,
         drift_condition=rules.drift_condition.output[0],
+        ergodicity=rules.ergodicity.output[0],
         errata=rules.errata.output[0],
         theorem=rules.check_limit_theorem.output[0],
         deformation=rules.check_plasticity.output[0],

@@ -26,6 +26,7 @@ def values(
     limit,
     convergence,
     drift_condition,
+    ergodicity,
     errata,
     theorem,
     deformation,
@@ -52,8 +53,8 @@ def values(
         The formula for the permanent deformation against Monte Carlo, and its gamma^2.
     convergence : list of xarray.Dataset
         Spectral solutions of table 4, one per n.
-    drift_condition, errata : xarray.Dataset
-        Table 7 and the table of errata.
+    drift_condition, ergodicity, errata : xarray.Dataset
+        Tables 7 and 7b, and the table of errata.
     variance, sweep, trajectories, scenes, theorems, density, limit_theorem, plasticity : dict
         Sections of the configuration: figure 2a, figure 2b, trajectories, every scene, table 7,
         figure 8, figure 9.
@@ -153,6 +154,7 @@ def values(
             "printed": f"{-float(drift_condition['forcing_printed'].min()):.2f}",
             "rounding": _scientific(drift_condition["drift_error"].max(), bound=True),
         },
+        "ergodicity": _ergodicity(ergodicity, theorems["ergodicity"], scenes["scenes"]),
         "errata": {
             "rows": str(errata.sizes["entry"]),
             "entries": str(len({str(entry).strip("abcd") for entry in errata["entry"].values})),
@@ -163,6 +165,26 @@ def values(
 
 def _formula(text, variable):
     return tylax.latex_to_typst(latex(parse(text, (variable,))))
+
+
+def _ergodicity(found, section, scenes):
+    """How well rates agree, and the scenes in which infinity is slower than the spectral gap."""
+    deviation = np.abs(found["rate"] - found["gap"]) / (found["rate_error"] + found["gap_error"])
+    slower = found["far"] + found["far_error"] < found["gap"] - found["gap_error"]
+    return {
+        "step": f"{section['step']:g}",
+        "enlargement": f"{section['enlargement']:g}",
+        "deviation": f"{float(deviation.max()):.2f}",
+        "slower": [
+            {
+                "model": scenes[name]["scene"]["model"].replace("_", "-"),
+                "noise": scenes[name]["scene"]["noise"],
+                "far": f"{float(found['far'].sel(scene=name)):.2f}",
+                "gap": f"{float(found['gap'].sel(scene=name)):.2f}",
+            }
+            for name in found["scene"].values[slower.values]
+        ],
+    }
 
 
 def _limit_theorem(theorem, section):
