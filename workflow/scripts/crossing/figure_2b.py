@@ -1,4 +1,4 @@
-"""Figure 2b: threshold crossing probabilities for growing p and their limit."""
+"""Figure 2b: threshold crossing probabilities for growing p, exact and sampled."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -7,8 +7,11 @@ from nonsmooth.plotting import LOOKS, ORANGE, TEXT_WIDTH, draw
 from nonsmooth.tables import sorted_by
 
 
-def crossing(monte_carlo, asymptotic, check):
-    """Draw W(sqrt(p) b, p T) and W_star(b / gamma, T) above their differences, with 95 % bands.
+def crossing(monte_carlo, exact, asymptotic, check, contained):
+    """Draw W(sqrt(p) b, p T) and W_star(b / gamma, T) above their differences.
+
+    Lines are exact, the 95 % bands those of Monte Carlo. The artifacts of the checks are not drawn:
+    without them there is no figure.
 
     Returns
     -------
@@ -18,19 +21,19 @@ def crossing(monte_carlo, asymptotic, check):
         2, 1, figsize=(0.75 * TEXT_WIDTH, 4.4), sharex=True, height_ratios=[2, 1]
     )
     limit = _from_zero(asymptotic["probability"])
-    for k, run in enumerate(sorted_by("p", monte_carlo)):
+    runs = zip(sorted_by("p", monte_carlo), sorted_by("p", exact), strict=True)
+    for k, (run, curve) in enumerate(runs):
         color, dashes = LOOKS[k % len(LOOKS)]
         horizon = _from_zero(run["horizon"])
-        probability, lower, upper = (
-            _from_zero(run[name]) for name in ("probability", "lower", "upper")
-        )
-        for axis, shift in ((top, 0.0), (bottom, limit)):
+        lower, upper = _from_zero(run["lower"]), _from_zero(run["upper"])
+        solved = curve["horizon"].values  # the last of the horizons
+        for axis, shift in ((top, np.zeros_like(limit)), (bottom, limit)):
             axis.fill_between(
                 horizon, lower - shift, upper - shift, color=color, alpha=0.3, linewidth=0
             )
             axis.plot(
-                horizon,
-                probability - shift,
+                solved,
+                curve["probability"] - shift[-len(solved) :],
                 color=color,
                 linestyle=dashes,
                 label=f"$p = {float(run['p']):g}$",

@@ -1,0 +1,50 @@
+"""Figure 10: errors of the asymptotic formula and of its corrections against p."""
+
+import matplotlib.pyplot as plt
+
+from nonsmooth.plotting import BLACK, BLUE, ORANGE, TEXT_WIDTH, draw
+
+LOOKS = {"plain": (ORANGE, "o", "-"), "order 1": (BLUE, "s", "--"), "order 2": (BLACK, "^", "-.")}
+
+
+def errors(formulas, fit_from):
+    """Draw the largest error over T where it exceeds what it is known to, and the fitted powers.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure, axis = plt.subplots(figsize=(0.75 * TEXT_WIDTH, 2.9))
+    p = formulas["p"].values
+    for name, (color, marker, dashes) in LOOKS.items():
+        row = formulas.sel(formula=name)
+        known = (row["distance"] > row["distance_error"]).values
+        distance, error = row["distance"].values[known], row["distance_error"].values[known]
+        slope = float(row["slope"])
+        axis.errorbar(
+            p[known],
+            distance,
+            error,
+            color=color,
+            marker=marker,
+            markersize=3.5,
+            linestyle=dashes,
+            label=f"{name}: slope ${slope:.2f}$",
+        )
+    floor = formulas["exact_error"].max("horizon")
+    axis.plot(p, floor, color="0.5", linestyle=":", label="error of the exact value")
+    axis.axvspan(p[0] / 2, fit_from, color="0.95", linewidth=0)
+    axis.set(
+        xlabel="$p$",
+        ylabel="largest error over $T$",
+        xscale="log",
+        yscale="log",
+        xlim=(p[0] / 2, p[-1] * 2),
+    )
+    axis.set_ylim(top=1.0)
+    axis.legend(loc="lower left")
+    return figure
+
+
+if __name__ == "__main__":
+    draw(errors, snakemake)
