@@ -78,7 +78,9 @@ def _check_finite_p(finite_p, crossing):
     """Table 9's T is one of the formulas' and of Monte Carlo's."""
     for key in ("p", "horizons"):
         if sorted(set(finite_p[key])) != finite_p[key]:
-            raise ConfigError(f"config: 'finite_p.{key}' = {finite_p[key]} must increase; sort them")
+            raise ConfigError(
+                f"config: 'finite_p.{key}' = {finite_p[key]} must increase; sort them"
+            )
     horizon, interval = finite_p["tabulated"], crossing["horizon"] / crossing["outputs"]
     if horizon not in finite_p["horizons"] or not _divides(interval, horizon):
         raise ConfigError(

@@ -26,7 +26,7 @@ def containment(monte_carlo, exact, seed):
     Parameters
     ----------
     monte_carlo, exact : list of xarray.Dataset
-        One per p.
+        One per p; the same number of paths for all.
     seed : int
 
     Returns
@@ -42,11 +42,13 @@ def containment(monte_carlo, exact, seed):
     p = np.array([float(curve["p"]) for curve in exact])
     points = sum(curve.sizes["horizon"] for curve in exact)
     z = -ndtri(OUTSIDE / 2 / points)
+    paths = int(monte_carlo[0]["paths"])
+    _, lowest, highest = proportion(np.arange(paths + 1), paths)
     contained, distance, standard_errors, replicates = [], [], [], []
     for run, curve in zip(monte_carlo, exact, strict=True):
         run = run.sel(horizon=curve["horizon"], method="nearest", tolerance=1e-9)
         horizon, truth = curve["horizon"].values, curve["probability"].values
-        probability, paths = run["probability"].values, int(run["paths"])
+        probability = run["probability"].values
         # a relative shift s of the first-passage times changes W by -s dW/dlog T
         slope = horizon * np.gradient(truth, horizon) / float(run["slope"])
         bias = float(run["bias"]) * slope
@@ -68,8 +70,8 @@ def containment(monte_carlo, exact, seed):
         random = np.random.default_rng([seed, len(replicates)])
         cells = np.diff(sampled, prepend=0.0, append=1.0)
         counts = random.multinomial(paths, cells, size=REPLICATES)[:, :-1].cumsum(axis=1)
-        _, lower, upper = proportion(np.arange(paths + 1), paths)
-        replicates.append(np.mean((lower[counts] <= truth) & (truth <= upper[counts]), axis=1))
+        inside = (lowest[counts] <= truth) & (truth <= highest[counts])
+        replicates.append(inside.mean(axis=1))
     share, shares = np.mean(contained), np.mean(replicates, axis=0)
     least = np.quantile(shares, RARELY)
     if share < least:

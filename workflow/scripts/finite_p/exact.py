@@ -18,9 +18,7 @@ def exact(scene, threshold, horizon, outputs, first_time, tolerance, p):
     scene = Scene(**scene)
     horizons = horizon / outputs * np.arange(1, outputs + 1)
     horizons = horizons[horizons >= first_time * (1 - 1e-9)]
-    solution = crossing_probability(
-        scene, threshold, horizons, p, method="spectral", tol=tolerance
-    )
+    solution = crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tolerance)
     return artifact.dataset(
         "Threshold crossing probability by the spectral method",
         f"{scene}, b = {threshold}, p = {p}",

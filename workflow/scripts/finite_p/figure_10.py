@@ -14,7 +14,7 @@ def errors(formulas, fit_from):
     -------
     matplotlib.figure.Figure
     """
-    figure, axis = plt.subplots(figsize=(0.75 * TEXT_WIDTH, 2.9))
+    figure, axis = plt.subplots(figsize=(0.75 * TEXT_WIDTH, 3.2))
     p = formulas["p"].values
     for name, (color, marker, dashes) in LOOKS.items():
         row = formulas.sel(formula=name)
@@ -42,7 +42,7 @@ def errors(formulas, fit_from):
         xlim=(p[0] / 2, p[-1] * 2),
     )
     axis.set_ylim(top=1.0)
-    axis.legend(loc="lower left")
+    figure.legend(loc="outside lower center", ncols=2)
     return figure
 
 
