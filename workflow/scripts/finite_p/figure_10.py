@@ -8,7 +8,7 @@ LOOKS = {"plain": (ORANGE, "o", "-"), "order 1": (BLUE, "s", "--"), "order 2": (
 
 
 def errors(formulas, fit_from):
-    """Draw the largest error over T where it exceeds what it is known to, and the fitted powers.
+    """Draw the largest error over T where it is resolved, and the fitted powers.
 
     Returns
     -------
@@ -18,18 +18,15 @@ def errors(formulas, fit_from):
     p = formulas["p"].values
     for name, (color, marker, dashes) in LOOKS.items():
         row = formulas.sel(formula=name)
-        known = (row["distance"] > row["distance_error"]).values
-        distance, error = row["distance"].values[known], row["distance_error"].values[known]
-        slope = float(row["slope"])
-        axis.errorbar(
+        known = row["resolved"].values.astype(bool)
+        axis.plot(
             p[known],
-            distance,
-            error,
+            row["distance"].values[known],
             color=color,
             marker=marker,
             markersize=3.5,
             linestyle=dashes,
-            label=f"{name}: slope ${slope:.2f}$",
+            label=f"{name}: slope ${float(row['slope']):.2f}$",
         )
     floor = formulas["exact_error"].max("horizon")
     axis.plot(p, floor, color="0.5", linestyle=":", label="error of the exact value")

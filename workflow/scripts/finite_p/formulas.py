@@ -25,7 +25,7 @@ CONSTANTS = {
     "poisson": "Poisson solution u at the start",
     "start": "h at the start",
 }
-RESOLVED = 10  # a distance is fitted where it is as many times its own error
+RESOLVED = 10  # a distance is resolved where it is as many times its own error
 
 
 def formulas(scene, threshold, horizons, p, fit_from):
@@ -61,9 +61,10 @@ def formulas(scene, threshold, horizons, p, fit_from):
     value, error = np.array([evaluate(options) for options in FORMULAS.values()]).swapaxes(0, 1)
     distance = np.abs(value - exact).max(axis=-1)
     distance_error = (error + exact_error).max(axis=-1)
+    resolved = distance > RESOLVED * distance_error
     slopes, deviations = [], []
-    for name, row, uncertainty in zip(FORMULAS, distance, distance_error, strict=True):
-        used = (p >= fit_from) & (row > RESOLVED * uncertainty)
+    for name, row, known in zip(FORMULAS, distance, resolved, strict=True):
+        used = (p >= fit_from) & known
         if used.sum() < 2:
             raise CheckError(
                 f"finite_p: the error of the formula {name!r} is resolved at fewer than two "
@@ -80,6 +81,11 @@ def formulas(scene, threshold, horizons, p, fit_from):
         "exact_error": (every[1:], exact_error, "difference of two resolutions"),
         "distance": (every[:2], distance, "largest error of the formula over T"),
         "distance_error": (every[:2], distance_error, "largest error of both methods over T"),
+        "resolved": (
+            every[:2],
+            resolved.astype(np.int8),
+            f"1 where the distance is {RESOLVED} times its error",
+        ),
         "slope": ("formula", slopes, "power of p that fits the distance"),
         "slope_error": ("formula", deviations, "largest deviation of a slope between neighbours"),
     }
