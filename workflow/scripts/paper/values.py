@@ -59,9 +59,11 @@ def values(
         Spectral solutions of table 4, one per n.
     drift_condition, errata : xarray.Dataset
         Table 7 and the table of errata.
-    variance, sweep, finite_p, trajectories, scenes, theorems, density, limit_theorem, plasticity : dict
+    variance, sweep, finite_p, trajectories, scenes : dict
         Sections of the configuration: figure 2a, figure 2b, the corrected formulas, trajectories,
-        every scene, table 7, figure 8, figure 9.
+        every scene.
+    theorems, density, limit_theorem, plasticity : dict
+        Sections, too: table 7, figure 7, figure 8, figure 9.
     horizon, scheme
         Horizon and finite differences of table 4.
     seed : int
@@ -177,13 +179,14 @@ def _finite_p(contained, formulas, section):
     p, distance = formulas["p"].values, formulas["distance"]
     first, second = (distance.sel(formula=name).values for name in ("order 1", "order 2"))
     resolved = formulas["resolved"].sel(formula="order 2").values.astype(bool)
-    last_worse = np.flatnonzero(resolved & (second >= first))[-1]
+    better = p[p > max(p[resolved & (second >= first)], default=0.0)]
     return {name: f"{float(formulas[name]):.8f}" for name in constants} | {
         "constants_error": _scientific(
             max(float(formulas[f"{name}_error"]) for name in constants), bound=True
         ),
         "horizons": ", ".join(f"{T:g}" for T in section["horizons"]),
         "tabulated": f"{section['tabulated']:g}",
+        "tolerance": _scientific(section["tolerance"]),
         "first_time": f"{section['first_time']:g}",
         "fit_from": f"{section['fit_from']:g}",
         "slopes": [f"{slope:.2f}" for slope in formulas["slope"].values],
@@ -196,8 +199,7 @@ def _finite_p(contained, formulas, section):
             for k, scale in enumerate(p)
             if resolved[k]
         ],
-        "order_2_worse": f"{p[last_worse]:g}",
-        "order_2_better": f"{p[last_worse + 1]:g}",
+        "order_2_better": f"{better[0]:g}" if better.size else "oo",
         "share": f"{100 * float(contained['share']):.1f}",
         "expected": f"{100 * float(contained['expected']):.1f}",
         "spread": f"{100 * float(contained['spread']):.1f}",
