@@ -18,7 +18,6 @@ def lines_with(run, text):
         ("seed=-3", "error: config: 'seed' = -3: must be at least 0"),
         ("crossing={treshold: 1}", "did you mean 'threshold'?"),
         ("crossing={scene: {model: obstacle}}", "has the state (y, x)"),
-        ("finite_p={tabulated: 3}", "'finite_p.tabulated' = 3 must be one of"),
         ("outputs={results: config.yaml/results}", "cannot write into 'config.yaml'"),
     ],
 )
