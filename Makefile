@@ -1,10 +1,11 @@
-# make paper · make test · make smoke · make lint · make benchmark · make lock · make clean
+# make paper · make test · make smoke · make lint · make benchmark · make figure_11 · make lock
+# make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: env paper smoke test lint format benchmark lock clean
+.PHONY: env paper smoke test lint format benchmark figure_11 lock clean
 
 paper: env
 	$(BIN)/snakemake --cores $(CORES)
@@ -29,6 +30,11 @@ format: env
 # PEERS: python of an environment made from benchmarks/peers.txt, to measure them too
 benchmark: env
 	$(BIN)/python -m benchmarks.speed $(PEERS)
+
+# measures times, on an idle machine, and records the figure for the paper
+figure_11: env
+	$(BIN)/snakemake --cores $(CORES) --forcerun finite_p_work -- figure_11
+	cp results/figures/figure_11.pdf docs/
 
 env: $(VENV)/installed
 

@@ -19,6 +19,7 @@ TRACKED = (
     "src",
     "paper",
     "profiles",
+    "docs/figure_11.pdf",
     "environment-lock.txt",
     "pyproject.toml",
 )
@@ -76,6 +77,7 @@ def copy_repository(destination, *extra):
             skip = shutil.ignore_patterns("__pycache__", "*.pdf", "*.egg-info")
             shutil.copytree(source, destination / name, ignore=skip)
         else:
+            (destination / name).parent.mkdir(exist_ok=True)
             shutil.copy2(source, destination / name)
     return Repository(destination)
 

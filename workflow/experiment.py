@@ -67,6 +67,7 @@ def check(config):
     p = config["limit_theorem"]["p"]
     if sorted(set(p)) != p:
         raise ConfigError(f"config: 'limit_theorem.p' = {p} must increase; sort them")
+    _check_finite_p(config["finite_p"], config["crossing"])
     yielding_oscillator(config["plasticity"]["ground"], config["plasticity"]["oscillator"])
     for model, parameters in config["trajectories"]["models"].items():
         Scene(model, potential=parameters["potential"], damping=parameters["damping"])
@@ -79,6 +80,26 @@ def check(config):
                 f"config: outputs.{key} = {path!r}: cannot write into {str(folder)!r}; "
                 "make it writable or choose another folder"
             )
+
+
+def _check_finite_p(finite_p, crossing):
+    """Table 9's T is one of the formulas' and of Monte Carlo's."""
+    for key in ("p", "horizons"):
+        if sorted(set(finite_p[key])) != finite_p[key]:
+            raise ConfigError(
+                f"config: 'finite_p.{key}' = {finite_p[key]} must increase; sort them"
+            )
+    horizon, interval = finite_p["tabulated"], crossing["horizon"] / crossing["outputs"]
+    if horizon not in finite_p["horizons"] or not _divides(interval, horizon):
+        raise ConfigError(
+            f"config: 'finite_p.tabulated' = {horizon} must be one of finite_p.horizons and a "
+            f"multiple of crossing.horizon/crossing.outputs = {interval:g}; change it"
+        )
+    if finite_p["first_time"] > 0.5 * crossing["horizon"]:
+        raise ConfigError(
+            f"config: 'finite_p.first_time' = {finite_p['first_time']} leaves less than half of "
+            f"crossing.horizon = {crossing['horizon']}; lower it"
+        )
 
 
 def _check_theorems(theorems):

@@ -2,11 +2,11 @@
 
 FIGURES = [
     *["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"],
-    *["figure_7", "figure_8", "figure_9"],
+    *["figure_7", "figure_8", "figure_9", "figure_10"],
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *["table_7b", "table_errata", "table_time_step"],
+    *["table_7b", "table_9", "table_errata", "table_time_step"],
 ]
 
 
@@ -33,6 +33,8 @@ rule values:
         monte_carlo=rules.variance_monte_carlo.output[0],
         agreement=rules.check_variance.output[0],
         crossing=rules.check_crossing.output[0],
+        contained=rules.check_finite_p.output[0],
+        formulas=rules.finite_p_formulas.output[0],
         limit=rules.sweep_limit.output[0],
         convergence=rules.table_4.input.spectral,
         drift_condition=rules.drift_condition.output[0],
@@ -54,6 +56,7 @@ rule values:
     params:
         variance=lookup(dpath="variance", within=config),
         sweep=lookup(dpath="crossing", within=config),
+        finite_p=lookup(dpath="finite_p", within=config),
         horizon=lookup(dpath="convergence/horizon", within=config),
         scheme=lookup(dpath="convergence/finite_difference", within=config),
         trajectories=lookup(dpath="trajectories", within=config),
@@ -75,6 +78,7 @@ rule paper:
         tables=rules.tables.input,
         values=rules.values.output[0],
         template="paper/paper.typ",
+        recorded="docs/figure_11.pdf",
         modules=sources("workflow/scripts/paper/typeset.py"),
     output:
         report(ensure(PAPER, non_empty=True), caption="../report/paper.rst", category="Paper"),

@@ -23,6 +23,8 @@ def values(
     monte_carlo,
     agreement,
     crossing,
+    contained,
+    formulas,
     limit,
     convergence,
     drift_condition,
@@ -33,6 +35,7 @@ def values(
     deformation_variance,
     variance,
     sweep,
+    finite_p,
     horizon,
     scheme,
     trajectories,
@@ -49,15 +52,19 @@ def values(
     ----------
     spectral, monte_carlo, agreement, crossing, limit, theorem : xarray.Dataset
         The artifacts.
+    contained, formulas : xarray.Dataset
+        Figure 2b's bands against exact curves; the corrected formulas.
     deformation, deformation_variance : xarray.Dataset
         The formula for the permanent deformation against Monte Carlo, and its gamma^2.
     convergence : list of xarray.Dataset
         Spectral solutions of table 4, one per n.
     drift_condition, ergodicity, errata : xarray.Dataset
         Tables 7 and 7b, and the table of errata.
-    variance, sweep, trajectories, scenes, theorems, density, limit_theorem, plasticity : dict
-        Sections of the configuration: figure 2a, figure 2b, trajectories, every scene, table 7,
-        figure 8, figure 9.
+    variance, sweep, finite_p, trajectories, scenes : dict
+        Sections of the configuration: figure 2a, figure 2b, the corrected formulas, trajectories,
+        every scene.
+    theorems, density, limit_theorem, plasticity : dict
+        Sections, too: table 7, figure 7, figure 8, figure 9.
     horizon, scheme
         Horizon and finite differences of table 4.
     seed : int
@@ -106,6 +113,7 @@ def values(
             "standard_error": f"{float(largest['standard_error']):.4f}",
             "ratio": f"{float(largest['distance'] / largest['standard_error']):.0f}",
         },
+        "finite_p": _finite_p(contained, formulas, finite_p),
         "convergence": {
             "horizon": f"{horizon:g}",
             "growth_error": _scientific(max(r["growth_error"] for r in convergence), bound=True),
@@ -184,6 +192,43 @@ def _ergodicity(found, section, scenes):
             }
             for name in found["scene"].values[slower.values]
         ],
+    }
+
+
+def _finite_p(contained, formulas, section):
+    """Constants and errors of the corrected formulas, and how often bands contain exact curves."""
+    constants = ("diffusion", "length", "dispersion", "corner", "start")
+    p, distance = formulas["p"].values, formulas["distance"]
+    first, second = (distance.sel(formula=name).values for name in ("order 1", "order 2"))
+    resolved = formulas["resolved"].sel(formula="order 2").values.astype(bool)
+    better = p[p > max(p[resolved & (second >= first)], default=0.0)]
+    return {name: f"{float(formulas[name]):.8f}" for name in constants} | {
+        "constants_error": _scientific(
+            max(float(formulas[f"{name}_error"]) for name in constants), bound=True
+        ),
+        "horizons": ", ".join(f"{T:g}" for T in section["horizons"]),
+        "tabulated": f"{section['tabulated']:g}",
+        "tolerance": _scientific(section["tolerance"]),
+        "first_time": f"{section['first_time']:g}",
+        "fit_from": f"{section['fit_from']:g}",
+        "slopes": [f"{slope:.2f}" for slope in formulas["slope"].values],
+        "errors": [
+            {"p": f"{scale:g}"}
+            | {
+                str(name): _scientific(distance.sel(formula=name)[k])
+                for name in distance["formula"].values
+            }
+            for k, scale in enumerate(p)
+            if resolved[k]
+        ],
+        "order_2_better": f"{better[0]:g}" if better.size else "oo",
+        "share": f"{100 * float(contained['share']):.1f}",
+        "expected": f"{100 * float(contained['expected']):.1f}",
+        "spread": f"{100 * float(contained['spread']):.1f}",
+        "least": f"{100 * float(contained['least']):.1f}",
+        "rarely": _scientific(contained["rarely"]),
+        "outside": _scientific(contained["outside"]),
+        "standard_errors": f"{float(contained['standard_errors'].max()):.1f}",
     }
 
 
