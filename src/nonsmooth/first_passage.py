@@ -28,6 +28,8 @@ _NEGLIGIBLE, _RISEN = 1e-14, 0.95  # bounds of the probability; below the first,
 _LATER = 2.0  # the end of the rise, relative to the last time whose bound is below _RISEN
 _FINELY = 0.7  # grading of the elements while the probability rises
 _LAST = 1e-15  # terms of a contour through a saddle, relative to the first
+# of the decay per relaxation time of a slow crossing, as measured against the second order formula
+_ROUNDING = 1e-13
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _UNDERFLOW, _ROUNDED = 1e-300, 1e-70
 _AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
@@ -70,7 +72,9 @@ def spectral_crossing(scene, lower, upper, times, tol):
     solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[0])
     for level in _LEVELS[1:]:
         coarse, solution = solution, _solve(scene, lower, upper, times, saddles, *level)
-        error = np.abs(solution - coarse) + 1e-13 * solution + _UNDERFLOW
+        error = _largest_nearby(np.abs(solution - coarse), solution, times)
+        error += 1e-13 * solution + _UNDERFLOW
+        error += _ROUNDING * scene.damping * times * solution[0] * solution[1]
         error[0] = np.where(solution[0] == 0, np.maximum(_NEGLIGIBLE, error[0]), error[0])
         # the same event: what is known of the rarer of the two is known of both
         least = error.min(axis=0)
@@ -88,6 +92,17 @@ def spectral_crossing(scene, lower, upper, times, tol):
         "survival": solution[1],
         "survival_error": error[1],
     }
+
+
+def _largest_nearby(errors, values, times):
+    """Largest error within a factor of two in time, for single ones may vanish by chance.
+
+    Those of larger values count relative to the value.
+    """
+    near = np.abs(np.log(times[:, None] / times)) <= np.log(2)
+    values = np.maximum(values, _UNDERFLOW)
+    share = np.minimum(values[:, :, None] / values[:, None, :], 1.0)
+    return np.max(near * share * errors[:, None, :], axis=2)
 
 
 @dataclass(frozen=True)
