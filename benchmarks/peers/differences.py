@@ -22,7 +22,7 @@ def fitted_grid(n, cells):
         return width * np.expm1(outer * log_ratio) / np.expm1(log_ratio) - rest
 
     if width * outer < rest:
-        ratio = np.exp(scipy.optimize.brentq(excess, 1e-9, 5.0))
+        ratio = np.exp(scipy.optimize.brentq(excess, 1e-9, 500.0 / outer))
         outside = knot + width * np.cumsum(ratio ** np.arange(outer))
     else:
         outside = knot + rest * np.arange(1, outer + 1) / outer
