@@ -65,7 +65,7 @@ def py_pde(n, horizon, cells):
 
     @functools.lru_cache(maxsize=1)
     def compiled():
-        solver = pde.ExplicitSolver(equations)
+        solver = pde.EulerSolver(equations)
         start = pde.FieldCollection([pde.ScalarField(grid), pde.ScalarField(grid)])
         return start, solver.make_stepper(start, dt=step)
 
