@@ -60,7 +60,7 @@ def unseeded(function):
     return lambda *arguments, seed, **options: function(*arguments, **options)
 
 
-def measured(title, summary, cases, references, rounds):
+def measured(title, summary, cases, rounds, references=None):
     """Run every case in rounds.
 
     Parameters
@@ -68,10 +68,10 @@ def measured(title, summary, cases, references, rounds):
     title, summary : str
         Of the artifact.
     cases : list of Case
-    references : dict
-        Panel -> reference value and bound of its error.
     rounds : int
         At least 2. Each has its own seed, 1, 2, ...
+    references : dict, optional
+        Panel -> reference value and bound of its error; times only, unless given.
 
     Returns
     -------
@@ -96,9 +96,6 @@ def measured(title, summary, cases, references, rounds):
                     f"{values[k, seed]}; choose a size at which it is stable"
                 )
     values, seconds = values[:, 1:], seconds[:, 1:]
-    truth, doubt = np.array([references[case.panel] for case in cases], dtype=float).T
-    error = np.sqrt(np.mean((values - truth[:, None]) ** 2, axis=1))
-    chance = np.where(np.ptp(values, axis=1) > 0, error / np.sqrt(2 * rounds), 0.0)
     data = artifact.dataset(
         title,
         summary,
@@ -111,13 +108,22 @@ def measured(title, summary, cases, references, rounds):
             "seconds": ("case", np.median(seconds, axis=1), "median time of a run"),
             "seconds_least": ("case", seconds.min(axis=1), "least time of a run"),
             "seconds_most": ("case", seconds.max(axis=1), "largest time of a run"),
-            "error": ("case", error, "root mean square distance from the reference"),
-            "error_error": ("case", np.hypot(doubt, chance), "error of that distance"),
-        },
+        }
+        | ({} if references is None else _errors(cases, values, references)),
     )
     for name in ("seconds", "seconds_least", "seconds_most"):
         data[name].attrs["units"] = "s"
     return data
+
+
+def _errors(cases, values, references):
+    truth, doubt = np.array([references[case.panel] for case in cases], dtype=float).T
+    error = np.sqrt(np.mean((values - truth[:, None]) ** 2, axis=1))
+    chance = np.where(np.ptp(values, axis=1) > 0, error / np.sqrt(2 * values.shape[1]), 0.0)
+    return {
+        "error": ("case", error, "root mean square distance from the reference"),
+        "error_error": ("case", np.hypot(doubt, chance), "error of that distance"),
+    }
 
 
 @contextmanager

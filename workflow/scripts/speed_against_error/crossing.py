@@ -62,8 +62,8 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
         f"W of dry friction with white noise, n = {n:g}, b = {threshold:g}, T = {horizon:g}, one "
         "core; reference: another inversion of the Laplace transform, on a finer grid",
         cases,
-        references,
         rounds,
+        references,
     )
 
 

@@ -57,8 +57,8 @@ def growth(solved, names, scenes, degrees, tolerances, times, step, paths, round
         "Speed against error of gamma^2",
         f"relative error of gamma^2, one core; Monte Carlo with the step {step:g}",
         cases,
-        references,
         rounds,
+        references,
     )
 
 

@@ -59,9 +59,7 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
             scene = Scene("friction", n=penalization)
             panel = r"$n = \infty$" if penalization == float("inf") else f"$n = {n:g}$"
             exact = variance(scene, [horizon])
-            references[panel] = tuple(
-                float(exact[name][0]) / horizon for name in ("v", "v_error")
-            )
+            references[panel] = tuple(float(exact[name][0]) / horizon for name in ("v", "v_error"))
             for (name, (scheme, control)), step, count in product(schemes.items(), steps, paths):
                 run = timed(sampled, scene, horizon, step, count, scheme, control)
                 cases.append(Case(panel, name, step, run))
@@ -77,8 +75,8 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
             f"E Delta(T)^2 / T of dry friction with white noise, T = {horizon:g}, one core; "
             "reference: spectral elements",
             cases,
-            references,
             rounds,
+            references,
         )
 
 

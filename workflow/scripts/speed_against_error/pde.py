@@ -81,8 +81,8 @@ def pde(horizon, n, paper_scheme, fitted_grid, spectral_elements, libraries, rou
             "Speed against error of solvers for the variance",
             f"v(0, T)/T of dry friction with white noise, T = {horizon:g}; reference: quadrature",
             cases,
-            references,
             rounds,
+            references,
         )
 
 
