@@ -13,6 +13,7 @@ from nonsmooth.schemes import strang
 ROOT = Path(__file__).parents[1]
 TRACKED = (
     "Snakefile",
+    "benchmarks",
     "config.yaml",
     "config",
     "workflow",

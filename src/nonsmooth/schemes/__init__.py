@@ -53,7 +53,8 @@ SCHEMES = {
     "strang": Scheme(strang, 2.0, 1.5, longest_step=strang.longest_step),
     "dry_friction": Scheme(dry_friction, 2.0, 2.0, handles=dry_friction.handles, coupled=False),
     "drift_implicit": Scheme(drift_implicit, 1.0, 1.0, handles=drift_implicit.handles),
-    "lie": Scheme(lie, 1.0, 1.0, handles=drift_implicit.handles),
+    # the smooth part is exact but for int g
+    "lie": Scheme(lie, 2.0, 1.0, handles=drift_implicit.handles),
     "euler_maruyama": Scheme(
         euler_maruyama,
         1.0,

@@ -1,5 +1,6 @@
 """E Delta(T)^2 / T of dry friction by Monte Carlo: total error against time."""
 
+import sys
 from contextlib import ExitStack
 from itertools import product
 from pathlib import Path
@@ -31,7 +32,7 @@ LIBRARIES = ("torch", "torchsde", "diffrax")
 LOOP = "plain numba loop"
 
 
-def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python, own):
+def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python):
     """Measure every scheme at each step and number of paths, on one core.
 
     Parameters
@@ -43,7 +44,7 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
     steps, peer_steps : list of float
         Time steps.
     paths, peer_paths : list of int
-    rounds, python, own
+    rounds, python
         As for `pde`.
 
     Returns
@@ -53,7 +54,7 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
     """
     cases, references = [], {}
     with ExitStack() as stack:
-        loop = stack.enter_context(peer(own, PEERS))
+        loop = stack.enter_context(peer(sys.executable, PEERS))
         library = python and stack.enter_context(peer(python, PEERS))
         for penalization, schemes in ((float(n), FINITE), (float("inf"), LIMIT)):
             scene = Scene("friction", n=penalization)

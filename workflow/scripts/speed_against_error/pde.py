@@ -1,5 +1,6 @@
 """v(0, T)/T of dry friction by the paper's scheme and by others: error against time."""
 
+import sys
 from contextlib import ExitStack
 from itertools import product
 from pathlib import Path
@@ -15,7 +16,7 @@ from nonsmooth.work_precision import Case, measured, peer, timed, unseeded
 PEERS = "benchmarks/peers"
 
 
-def pde(horizon, n, paper_scheme, fitted_grid, spectral_elements, libraries, rounds, python, own):
+def pde(horizon, n, paper_scheme, fitted_grid, spectral_elements, libraries, rounds, python):
     """Measure every method at each n.
 
     Parameters
@@ -35,8 +36,6 @@ def pde(horizon, n, paper_scheme, fitted_grid, spectral_elements, libraries, rou
     rounds : int
     python : str or None
         Interpreter with the libraries; without it they are left out.
-    own : str
-        Interpreter of this environment.
 
     Returns
     -------
@@ -44,7 +43,7 @@ def pde(horizon, n, paper_scheme, fitted_grid, spectral_elements, libraries, rou
     """
     cases, references = [], {}
     with ExitStack() as stack:
-        differences = stack.enter_context(peer(own, Path(PEERS, "differences.py")))
+        differences = stack.enter_context(peer(sys.executable, Path(PEERS, "differences.py")))
         library = python and stack.enter_context(peer(python, Path(PEERS, "finite_elements.py")))
         for penalization in n:
             scene = Scene("friction", n=penalization)
