@@ -40,7 +40,7 @@ def diagram(measurements, x, y):
     panels, methods = (list(dict.fromkeys(table[name])) for name in ("panel", "method"))
     columns = min(COLUMNS, len(panels))
     rows = -(-len(panels) // columns)
-    shared = y if x == "size" and y == "error" or x == "seconds" else False
+    shared = y if (x == "size" and y == "error") or x == "seconds" else False
     figure, axes = plt.subplots(
         rows,
         columns,

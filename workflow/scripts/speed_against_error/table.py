@@ -1,6 +1,5 @@
 """Tables of the work-precision diagrams: time for an error, order of an error, growth of a time."""
 
-import numpy as np
 import pandas as pd
 
 from nonsmooth.tables import scientific, typeset
