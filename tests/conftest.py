@@ -1,5 +1,6 @@
 """Shared fixtures: copies of the repository in which the workflow can run and be disturbed."""
 
+import runpy
 import shutil
 import subprocess
 import sys
@@ -102,3 +103,10 @@ def finished(smoke_run, tmp_path):
     folder = tmp_path / "copy"
     shutil.copytree(smoke_run.folder, folder, symlinks=True)
     return Repository(folder)
+
+
+@pytest.fixture
+def script():
+    """Return a function that loads a script of the topic speed_against_error."""
+    folder = ROOT / "workflow" / "scripts" / "speed_against_error"
+    return lambda name: runpy.run_path(str(folder / f"{name}.py"))

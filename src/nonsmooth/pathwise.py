@@ -2,18 +2,18 @@
 
 import time
 
-import numba
 import numpy as np
 
 from nonsmooth import schemes
 from nonsmooth.errors import SceneError
+from nonsmooth.kernels import kernel
 from nonsmooth.panel import STATE, new_panel
 from nonsmooth.schemes import strang
 
 _ROW = {"friction": STATE[2], "elasto_plastic": STATE[3], "obstacle": STATE[3]}  # y, x, x
 
 
-@numba.njit(error_model="numpy", nogil=True)
+@kernel
 def _follow(s, data, increments, row, kept):
     """Advance the lanes step by step, unmerged, so that the state is known after each."""
     lanes = increments.shape[1]
