@@ -28,6 +28,7 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
     steps : list of float
         Time steps of Monte Carlo.
     paths : list of int
+        At the largest p; as many times more at smaller ones as sqrt(p) is smaller.
     degrees, contours : list of int
         Polynomial degree and nodes of the contour, of single spectral solutions.
     tolerance : float
@@ -44,7 +45,8 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
         panel = f"$p = {scale:g}$"
         references[panel] = on_a_line(scene, threshold, horizon, scale)
         for step, count in product(steps, paths):
-            run = timed(_counted, scene, threshold, horizon, scale, step, count)
+            more = round(count * np.sqrt(max(p) / scale))
+            run = timed(_counted, scene, threshold, horizon, scale, step, more)
             cases.append(Case(panel, "Monte Carlo, Strang", step, run))
         for degree, contour in zip(degrees, contours, strict=True):
             run = timed(unseeded(_inverted), scene, threshold, horizon, scale, degree, contour)

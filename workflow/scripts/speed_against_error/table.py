@@ -17,17 +17,18 @@ def tabulate(measurements, x, y):
     Returns
     -------
     plain, cells : pandas.DataFrame
-        Of error against time, the cells are the cases that no other of the method beats in both;
-        otherwise the exponent of each curve.
+        Of error against time, the cells are the cases that no other of the method beats in both,
+        errors no smaller than what is known of them; otherwise the exponent of each curve.
     """
     plain = measurements.to_dataframe().reset_index(drop=True)
     cells = []
     for (panel, method), curve in plain.groupby(["panel", "method"], sort=False):
         if x == "seconds":
-            seconds, error = curve["seconds"].to_numpy(), curve["error"].to_numpy()
+            seconds = curve["seconds"].to_numpy()
+            error = curve[["error", "error_error"]].to_numpy().max(axis=1)
             rows = [
                 {
-                    "size": f"{curve['size'].iloc[k]:g}",
+                    "step, degree, ...": f"{curve['size'].iloc[k]:g}",
                     "error": scientific(error[k]),
                     "seconds": f"{seconds[k]:.2g}",
                     "least to most": f"{curve['seconds_least'].iloc[k]:.2g} to "
