@@ -52,15 +52,20 @@ class BrownianPaths:
         self.scene, self.horizon, self.doublings = scene, horizon, doublings
         fine = self._coefficients(doublings)
         draws = np.random.default_rng(seed).standard_normal((2**doublings, paths))
-        self._increments = {doublings: float(fine.factor[0]) * draws}
-        for level in range(doublings, 0, -1):
-            decay = float(self._coefficients(level).transition[0])
-            early, late = self._increments[level][::2], self._increments[level][1::2]
-            self._increments[level - 1] = early + decay * early + late
+        self._known = {doublings: float(fine.factor[0]) * draws}
         self.reference, _ = self.follow(doublings)
 
     def _coefficients(self, level):
         return schemes.coefficients(self.scene, "strang", self.horizon / 2**level, "float64")
+
+    def _increments(self, level):
+        """Gaussian increments of the steps: pairs of finer ones, joined."""
+        if level not in self._known:
+            decay = float(self._coefficients(level + 1).transition[0])
+            finer = self._increments(level + 1)
+            early, late = finer[::2], finer[1::2]
+            self._known[level] = early + decay * early + late
+        return self._known[level]
 
     def follow(self, level):
         """Return the velocity under friction, otherwise the displacement, and the seconds.
@@ -77,7 +82,7 @@ class BrownianPaths:
         seconds : float
         """
         s = schemes.on_given_increments(self._coefficients(level))
-        increments = self._increments[level]
+        increments = self._increments(level)
         kept = np.empty(increments.shape)
         data = new_panel(self.scene, 0, 0, "float64").data
         began = time.perf_counter()

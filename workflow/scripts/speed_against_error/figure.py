@@ -50,10 +50,12 @@ def diagram(measurements, x, y):
         sharex=x != "size" or y == "error",
     )
     for axis, panel in zip(axes.flat, panels, strict=False):
-        for method, (color, marker, dashes) in zip(methods, LOOKS, strict=False):
+        for k, (method, (color, marker, dashes)) in enumerate(zip(methods, LOOKS, strict=False)):
             here = table[(table["panel"] == panel) & (table["method"] == method)]
             if len(here):
-                _curve(axis, here, x, y, color=color, marker=marker, linestyle=dashes, label=method)
+                # later ones are smaller, so that those beneath them are seen
+                looks = {"color": color, "marker": marker, "markersize": 4.5 - 0.3 * k}
+                _curve(axis, here, x, y, linestyle=dashes, label=method, **looks)
         axis.set(xscale="log", yscale="log")
         axis.set_title(panel, fontsize=8)
     for axis in axes.flat[len(panels) :]:
@@ -94,7 +96,6 @@ def _curve(axis, table, x, y, linestyle, **options):
         xerr=bars[x],
         yerr=bars[y],
         linestyle="none",
-        markersize=3,
         elinewidth=0.5,
         alpha=0.45,
         **options,
@@ -103,7 +104,6 @@ def _curve(axis, table, x, y, linestyle, **options):
         values[x][joined],
         values[y][joined],
         linestyle=linestyle,
-        markersize=3,
         label=label,
         **options,
     )
