@@ -9,24 +9,27 @@ import scipy
 from serve import serve
 
 REACH = 6.0  # the density there is exp(-48) of its maximum
+STRETCH = 0.4  # suits n = 2 to 1e4
 
 
 def fitted_grid(n, cells):
-    """Nodes, on each side `cells` of them, a quarter within the knot 1/n."""
-    knot, inner = 1 / n, cells // 4
-    outer = cells - inner
-    # widths grow evenly from the inner one, w q^k, to fill what is left
-    width, rest = knot / inner, REACH - knot
+    """Nodes, on each side `cells` of them; their density is 1 + STRETCH / (|y| + 1/n)."""
 
-    def excess(log_ratio):
-        return width * np.expm1(outer * log_ratio) / np.expm1(log_ratio) - rest
+    def count(y):
+        return y + STRETCH * np.log1p(n * y)
 
-    if width * outer < rest:
-        ratio = np.exp(scipy.optimize.brentq(excess, 1e-9, 500.0 / outer))
-        outside = knot + width * np.cumsum(ratio ** np.arange(outer))
-    else:
-        outside = knot + rest * np.arange(1, outer + 1) / outer
-    half = np.concatenate([np.linspace(0, knot, inner + 1), outside])
+    inner = max(2, round(cells * count(1 / n) / count(REACH)))
+    wanted = np.concatenate(
+        [
+            np.linspace(0, count(1 / n), inner + 1),
+            np.linspace(count(1 / n), count(REACH), cells - inner + 1)[1:],
+        ]
+    )
+    trial = np.concatenate([[0.0], np.geomspace(1e-3 / n, REACH, 10_000)])
+    half = np.interp(wanted, count(trial), trial)
+    for _ in range(2):  # Newton's method
+        half -= (count(half) - wanted) / (1 + STRETCH / (half + 1 / n))
+    half[[0, inner]] = 0.0, 1 / n
     return np.concatenate([-half[:0:-1], half])
 
 

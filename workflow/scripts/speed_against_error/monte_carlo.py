@@ -5,6 +5,7 @@ from contextlib import ExitStack
 from itertools import product
 from pathlib import Path
 
+from nonsmooth import schemes
 from nonsmooth.jobs import produce
 from nonsmooth.scene import Scene
 from nonsmooth.streams import labelled
@@ -42,7 +43,7 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
     n : float
         Finite penalization, beside the limit.
     steps, peer_steps : list of float
-        Time steps.
+        Time steps; a scheme leaves out those at which it is unstable.
     paths, peer_paths : list of int
     rounds, python
         As for `pde`.
@@ -56,12 +57,14 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
     with ExitStack() as stack:
         loop = stack.enter_context(peer(sys.executable, PEERS))
         library = python and stack.enter_context(peer(python, PEERS))
-        for penalization, schemes in ((float(n), FINITE), (float("inf"), LIMIT)):
+        for penalization, methods in ((float(n), FINITE), (float("inf"), LIMIT)):
             scene = Scene("friction", n=penalization)
             panel = r"$n = \infty$" if penalization == float("inf") else f"$n = {n:g}$"
             exact = variance(scene, [horizon])
             references[panel] = tuple(float(exact[name][0]) / horizon for name in ("v", "v_error"))
-            for (name, (scheme, control)), step, count in product(schemes.items(), steps, paths):
+            for (name, (scheme, control)), step, count in product(methods.items(), steps, paths):
+                if not step < schemes.scheme(scene, scheme).longest_step(scene):
+                    continue
                 run = timed(sampled, scene, horizon, step, count, scheme, control)
                 cases.append(Case(panel, name, step, run))
             if penalization == float("inf"):
