@@ -1,5 +1,7 @@
 """Work-precision diagrams: error against time, error against step, or time against size."""
 
+from itertools import cycle
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -16,6 +18,7 @@ LOOKS = [
     ("#8C6D00", "X", "--"),
     ("0.5", "*", "--"),
     ("0.3", "<", ":"),
+    ("#8800CC", ">", "-"),
 ]
 LABELS = {"seconds": "time in s", "error": "error", "size": "time step"}
 COLUMNS = 3
@@ -50,11 +53,13 @@ def diagram(measurements, x, y):
         sharex=x != "size" or y == "error",
     )
     for axis, panel in zip(axes.flat, panels, strict=False):
-        for k, (method, (color, marker, dashes)) in enumerate(zip(methods, LOOKS, strict=False)):
+        for k, (method, (color, marker, dashes)) in enumerate(
+            zip(methods, cycle(LOOKS), strict=False)
+        ):
             here = table[(table["panel"] == panel) & (table["method"] == method)]
             if len(here):
                 # later ones are smaller, so that those beneath them are seen
-                looks = {"color": color, "marker": marker, "markersize": 4.5 - 0.3 * k}
+                looks = {"color": color, "marker": marker, "markersize": 4.5 - 0.2 * k}
                 _curve(axis, here, x, y, linestyle=dashes, label=method, **looks)
         axis.set(xscale="log", yscale="log")
         axis.set_title(panel, fontsize=8)
