@@ -63,12 +63,17 @@ def diagram(measurements, x, y):
                 _curve(axis, here, x, y, linestyle=dashes, label=method, **looks)
         axis.set(xscale="log", yscale="log")
         axis.set_title(panel, fontsize=8)
+        sizes = np.unique(table["size"][table["panel"] == panel])
+        if y == "seconds" and sizes[-1] < 10:  # a count
+            axis.set_xticks(sizes, [f"{size:g}" for size in sizes])
+            axis.set_xticks([], minor=True)
     for axis in axes.flat[len(panels) :]:
         axis.set_axis_off()
     for row in axes:
         row[0].set_ylabel(LABELS[y])
-    for axis in axes[-1]:
-        axis.set_xlabel(LABELS[x] if y == "error" else "size")
+    if y == "error":  # otherwise each panel's title says it
+        for axis in axes[-1]:
+            axis.set_xlabel(LABELS[x])
     found = {}
     for axis in axes.flat[: len(panels)]:
         handles, labels = axis.get_legend_handles_labels()

@@ -44,7 +44,10 @@ def tabulate(measurements, x, y):
                 {
                     "from": f"{curve[x].min():g}",
                     "to": f"{curve[x].max():g}",
-                    "exponent": rf"${slope:.2f} \pm {spread:.2f}$",
+                    # two points have no residual
+                    "exponent": rf"${slope:.2f} \pm {spread:.2f}$"
+                    if len(curve) > 2
+                    else f"${slope:.2f}$",
                     f"{y} at the end": scientific(curve[y].iloc[-1]),
                 }
             ]
