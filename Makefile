@@ -1,17 +1,17 @@
-# make paper · make test · make smoke · make lint · make benchmark · make figure_11 · make lock
-# make clean
+# make paper · make test · make smoke · make lint · make benchmark · make peers · make diagrams ·
+# make lock · make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: env paper smoke test lint format benchmark figure_11 lock clean
+.PHONY: env paper smoke test lint format benchmark peers diagrams lock clean
 
 paper: env
 	$(BIN)/snakemake --cores $(CORES)
 
 smoke: env
-	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml
+	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml -- all speed_against_error
 
 test: env
 	$(BIN)/python -m pytest
@@ -31,10 +31,15 @@ format: env
 benchmark: env
 	$(BIN)/python -m benchmarks.speed $(PEERS)
 
-# measures times, on an idle machine, and records the figure for the paper
-figure_11: env
-	$(BIN)/snakemake --cores $(CORES) --forcerun finite_p_work -- figure_11
-	cp results/figures/figure_11.pdf docs/
+# the peers' environment, which the work-precision diagrams then use
+peers:
+	$(PYTHON) -m venv .venv-peers
+	.venv-peers/bin/python -m pip install --disable-pip-version-check --progress-bar off -r benchmarks/peers.txt
+
+# measures anew, on an idle machine, and refreshes the copies in docs/
+diagrams: env
+	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_growth measure_pathwise measure_cost -- speed_against_error
+	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
 
 env: $(VENV)/installed
 

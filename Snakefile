@@ -1,6 +1,7 @@
 # The pipeline: config -> scenes -> solve / simulate -> artifacts -> figures, tables -> paper.
 # This file validates the configuration, includes the rules and names the targets.
 import sys
+from pathlib import Path
 
 from workflow.dependencies import sources
 from workflow.experiment import (
@@ -35,6 +36,7 @@ wildcard_constraints:
     limit="[0-9.e+-]+",
     shard="[0-9]+",
     scene="[a-z0-9_]+",
+    diagram="[a-z_]+",
 
 
 rule all:
@@ -57,3 +59,4 @@ include: "workflow/rules/density.smk"
 include: "workflow/rules/limit_theorem.smk"
 include: "workflow/rules/plasticity.smk"
 include: "workflow/rules/paper.smk"
+include: "workflow/rules/speed_against_error.smk"

@@ -16,6 +16,7 @@ from nonsmooth import artifact
 RESULTS = "results/smoke"
 FIGURES = [f"figure_{name}" for name in ("1", "2a", "2b", *"3456789", "10")]
 TABLES = [f"table_{name}" for name in (*"123467", "9", "errata", "time_step")]
+TABLES.append("speed_pde")
 
 
 def test_every_figure_and_table_is_there(smoke_run):
@@ -31,6 +32,7 @@ def test_every_figure_and_table_is_there(smoke_run):
         assert r"\toprule" in tex
         assert r"\bottomrule" in tex
     assert (results / "paper.pdf").read_bytes().startswith(b"%PDF")
+    assert (results / "figures" / "speed_pde.png").exists()
     assert not list(results.rglob(".*partial*"))
 
 

@@ -78,7 +78,7 @@ rule paper:
         tables=rules.tables.input,
         values=rules.values.output[0],
         template="paper/paper.typ",
-        recorded="docs/figure_11.pdf",
+        recorded=["docs/speed_pde.pdf", "docs/speed_crossing.pdf"],
         modules=sources("workflow/scripts/paper/typeset.py"),
     output:
         report(ensure(PAPER, non_empty=True), caption="../report/paper.rst", category="Paper"),
