@@ -9,7 +9,7 @@ import xarray as xr
 
 from nonsmooth import schemes
 from nonsmooth.control import poisson_slope
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.march import march, march_pair
 from nonsmooth.models import STATE_VARIABLES
 from nonsmooth.panel import STATE, TOTAL_DELTA, new_panel
@@ -264,6 +264,12 @@ def step_bias(change, order):
     return factor * np.sum(weights * average, axis=1), factor * np.sqrt(variance / count[:, 0])
 
 
+def variance_of_fine(change):
+    """Variance of D with the half step, from `coupled`, shape (t,)."""
+    count = change[:, 0, 0]
+    return change[:, 3, 3] / count - (change[:, 0, 3] / count) ** 2
+
+
 def simulate(
     scene,
     horizon,
@@ -317,6 +323,8 @@ def simulate(
     ------
     SceneError
         If a parameter is out of range, or a path diverges.
+    ToleranceError
+        If the step is so long that halving it does not measure its bias.
     """
     if keep not in ("moments", "paths"):
         raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
@@ -345,6 +353,9 @@ def simulate(
     fewer = min(paths, max(PILOT_PATHS, paths // 8))
     found["variance_bias"], found["variance_bias_error"] = _bias(
         scene, times, step, fewer, labelled(seed, "halving"), threads, scheme
+    )
+    require_resolved(
+        step, *(found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))
     )
     return xr.Dataset(
         {name: ("time", values) for name, values in found.items()},
@@ -396,6 +407,34 @@ def _choose_step(scene, times, tol, seed, threads, scheme):
     bias, error = _bias(scene, times, step, PILOT_PATHS, labelled(seed, "pilot"), threads, scheme)
     worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
     return refined_step(step, worst, tol, schemes.scheme(scene, scheme).weak_order(scene))
+
+
+_MEASURABLE = 0.2  # largest relative bias of Var D at which halving the step measures it
+
+
+def require_resolved(step, variance, bias, error):
+    """Refuse a step so long that halving it does not measure its bias.
+
+    The bias follows the weak order for steps that are short against every time scale of the
+    scene, on which g varies included; then it is small against the variance.
+
+    Parameters
+    ----------
+    step : float
+    variance, bias, error : float
+        Of D at the last time: its variance, the bias of the step and its standard error.
+
+    Raises
+    ------
+    ToleranceError
+        If the bias is significantly above a fifth of the variance.
+    """
+    if abs(bias) > max(_MEASURABLE * variance, 4 * error):
+        raise ToleranceError(
+            f"step = {step:g} is too long for this scene: halving it puts the bias of the variance "
+            f"of int g at {abs(bias) / variance:.0%}, where it is no measure of it; "
+            "choose a smaller step"
+        )
 
 
 def require_finite(results):
