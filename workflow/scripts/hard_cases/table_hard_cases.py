@@ -1,0 +1,43 @@
+"""Table of the hard cases: the true error and the stated one, or what the method says."""
+
+import math
+
+import pandas as pd
+
+from nonsmooth.tables import scientific, typeset
+
+WIDTHS = ("1.2fr", "1fr", "auto", "auto", "auto", "2.6fr")
+
+
+def hard_cases(outcomes):
+    """Tabulate the outcomes.
+
+    Parameters
+    ----------
+    outcomes : xarray.Dataset
+        By case.
+
+    Returns
+    -------
+    plain, cells : pandas.DataFrame
+    """
+    plain = outcomes.to_dataframe().reset_index(drop=True)
+    cells = pd.DataFrame(
+        [
+            {
+                "case": row.title,
+                "method": row.method.replace("_", " "),
+                "value": "--" if math.isnan(row.value) else f"${row.value:.6g}$",
+                "off by": "--" if math.isnan(row.deviation) else scientific(row.deviation),
+                "says": "--" if math.isnan(row.value_error) else scientific(row.value_error),
+                "message": row.message.replace("_", " ").replace("**", "^") or row.verdict,
+            }
+            for row in plain.itertuples()
+        ]
+    )
+    cells.attrs["widths"] = WIDTHS
+    return plain, cells
+
+
+if __name__ == "__main__":
+    typeset(hard_cases, snakemake)
