@@ -22,8 +22,15 @@ _LEVEL = 0.95
 
 
 def contact_time(scene):
-    """Time scale of the penalty: of its relaxation, or of an elastic contact."""
-    return 1 / math.sqrt(scene.n) if scene.mechanics.in_potential else 1 / scene.n
+    """Time scale of the penalty, which steps must resolve.
+
+    That of an elastic contact, n^(-1/2); of a relaxation, 1/n; of a Brownian velocity within
+    |y| < 1/n, n^(-2).
+    """
+    if scene.mechanics.in_potential:
+        return scene.n**-0.5
+    diffuses = scene.mechanics.argument == scene.noise.driven
+    return scene.n**-2.0 if diffuses else 1 / scene.n
 
 
 def largest_distances(scene, variable, horizon, step, paths, seed, threads=None):

@@ -1,5 +1,7 @@
 """Run every hard case and judge what is returned there."""
 
+import math
+
 from nonsmooth import artifact
 from nonsmooth.errors import CheckError
 from nonsmooth.hard_cases import CASES, DEVIATIONS, WRONG, examine
@@ -32,26 +34,32 @@ def judge(paths):
                 f"{outcome.error:.2g} is off by {outcome.deviation:.2g}: detect and refuse it"
             )
 
-    def values(name, of=outcomes):
+    compared = [k for k, outcome in enumerate(outcomes) if math.isfinite(outcome.deviation)]
+
+    def texts(name, of):
         return "case", [getattr(item, name) for item in of]
+
+    def numbers(name):
+        return "result", [getattr(outcomes[k], name) for k in compared]
 
     return artifact.dataset(
         "Hard cases",
         f"public functions in nasty cases, {paths} paths, against independent references",
         {
-            "title": (*values("title", CASES), "the case, LaTeX"),
-            "method": (*values("method", CASES), "what is called"),
-            "verdict": (*values("verdict"), "met, warned or refused"),
-            "message": (*values("message"), "the error or the warning"),
+            "title": (*texts("title", CASES), "the case, LaTeX"),
+            "method": (*texts("method", CASES), "what is called"),
+            "verdict": (*texts("verdict", outcomes), "met, warned or refused"),
+            "message": (*texts("message", outcomes), "the error or the warning"),
+            "of_case": ("result", compared, "number of the case, from 0; the others have no value"),
         },
         {
-            "value": (*values("value"), "what is returned, not a number if it is refused"),
+            "value": (*numbers("value"), "what is returned"),
             "value_error": (
-                *values("error"),
+                *numbers("error"),
                 f"stated error; of samples the step's bias and {DEVIATIONS:g} standard errors",
             ),
-            "reference": (*values("reference"), "independent reference"),
-            "deviation": (*values("deviation"), "distance to the reference"),
+            "reference": (*numbers("reference"), "independent reference"),
+            "deviation": (*numbers("deviation"), "distance to the reference"),
         },
     )
 

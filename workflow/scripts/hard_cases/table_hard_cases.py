@@ -21,7 +21,11 @@ def hard_cases(outcomes):
     -------
     plain, cells : pandas.DataFrame
     """
-    plain = outcomes.to_dataframe().reset_index(drop=True)
+    plain = pd.DataFrame(
+        {name: outcomes[name].values for name in ("title", "method", "verdict", "message")}
+    )
+    for name in ("value", "value_error", "reference", "deviation"):
+        plain[name] = pd.Series(outcomes[name].values, index=outcomes["of_case"].values)
     cells = pd.DataFrame(
         [
             {
