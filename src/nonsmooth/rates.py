@@ -11,6 +11,7 @@ from scipy import stats
 
 from nonsmooth import schemes
 from nonsmooth.closed_form import friction_variance
+from nonsmooth.errors import ToleranceError
 from nonsmooth.growth import integrals
 from nonsmooth.march import march
 from nonsmooth.models import STATE_VARIABLES
@@ -117,12 +118,20 @@ def slope(n, value, error):
         With the half width of a 95 % interval by the delta method (the error of the logarithm is
         the relative one). If the points scatter about the line more than their errors explain, as
         they do where a further order counts, the scatter takes the place of the errors, with
-        Student's factor. Not a number if fewer than three points are left.
+        Student's factor.
+
+    Raises
+    ------
+    ToleranceError
+        If fewer than three values are left.
     """
     n, value, error = (np.asarray(item, dtype=float) for item in (n, np.abs(value), error))
     kept = value > 2 * error
     if np.count_nonzero(kept) < 3:
-        return math.nan, math.nan
+        raise ToleranceError(
+            f"of the {len(n)} differences to the limit {np.count_nonzero(kept)} are above two of "
+            "their errors, and a slope needs three; take more paths or a longer horizon"
+        )
     x, y = np.log(n[kept]), np.log(value[kept])
     weight = (value / np.maximum(error, 1e-12 * value))[kept] ** 2
     # none counts more than ten times the others together can

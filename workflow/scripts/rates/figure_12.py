@@ -2,6 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import NullFormatter
 
 from nonsmooth.models import MODELS
 from nonsmooth.noises import NOISES
@@ -56,6 +57,7 @@ def distances(rates, scenes):
             label = rf"{text}: ${exponent:.2f} \pm {half:.2f}$"
             panel.plot(n, centre * n**exponent, color=color, linestyle=dashes, label=label)
         panel.set(xscale="log", yscale="log", xlabel="$n$")
+        panel.xaxis.set_minor_formatter(NullFormatter())
         low, high = panel.get_ylim()
         panel.set_ylim(low, high * (high / low) ** 0.45)
         panel.legend(loc="upper right", fontsize=6.5)
