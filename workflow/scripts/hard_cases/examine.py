@@ -4,7 +4,7 @@ import math
 
 from nonsmooth import artifact
 from nonsmooth.errors import CheckError
-from nonsmooth.hard_cases import CASES, DEVIATIONS, WRONG, examine
+from nonsmooth.hard_cases import CASES, DEVIATIONS, REFUSED, WRONG, examine
 from nonsmooth.jobs import produce
 
 
@@ -53,6 +53,11 @@ def judge(paths):
             "of_case": ("result", compared, "number of the case, from 0; the others have no value"),
         },
         {
+            "refused": (
+                "case",
+                [int(outcome.verdict == REFUSED) for outcome in outcomes],
+                "1 where the case is refused",
+            ),
             "value": (*numbers("value"), "what is returned"),
             "value_error": (
                 *numbers("error"),
