@@ -31,7 +31,7 @@ def hard_cases(outcomes):
             {
                 "case": row.title,
                 "method": row.method.replace("_", " "),
-                "value": "--" if math.isnan(row.value) else f"${row.value:.6g}$",
+                "value": _number(row.value),
                 "off by": "--" if math.isnan(row.deviation) else scientific(row.deviation),
                 "says": "--" if math.isnan(row.value_error) else scientific(row.value_error),
                 "message": row.message.replace("_", " ").replace("**", "^") or row.verdict,
@@ -41,6 +41,12 @@ def hard_cases(outcomes):
     )
     cells.attrs["widths"] = WIDTHS
     return plain, cells
+
+
+def _number(value):
+    if math.isnan(value):
+        return "--"
+    return f"${value:.6g}$" if value == 0 or abs(value) >= 1e-3 else scientific(value, 5)
 
 
 if __name__ == "__main__":
