@@ -37,10 +37,10 @@ def check(config):
                 "choose friction with potential '0' and g of y"
             )
         nodes = config[topic].get("finite_difference", {}).get("nodes", 1)
-        if nodes % 4 != 1:
+        if nodes % 8 != 1:
             raise ConfigError(
-                f"config: '{topic}.finite_difference.nodes' = {nodes}: (N - 1)/4 must be an "
-                f"integer, so that the mesh can be halved; use {nodes // 4 * 4 + 1}"
+                f"config: '{topic}.finite_difference.nodes' = {nodes}: (N - 1)/8 must be an "
+                f"integer, so that the mesh and the domain can be halved; use {nodes // 8 * 8 + 1}"
             )
     _check_times(config["variance"])
     times = config["sweep"]["variance"]["times"]

@@ -2,11 +2,11 @@
 
 FIGURES = [
     *["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"],
-    *["figure_7", "figure_8", "figure_9", "figure_10"],
+    *["figure_7", "figure_8", "figure_9", "figure_10", "figure_12"],
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *["table_7b", "table_9", "table_errata", "table_time_step"],
+    *["table_7b", "table_9", "table_10", "table_errata", "table_time_step"],
 ]
 
 
@@ -43,6 +43,7 @@ rule values:
         theorem=rules.check_limit_theorem.output[0],
         deformation=rules.check_plasticity.output[0],
         deformation_variance=rules.plasticity_variance.output[0],
+        rates=rules.measure_rates.output[0],
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),
@@ -65,6 +66,7 @@ rule values:
         density=lookup(dpath="density", within=config),
         limit_theorem=lookup(dpath="limit_theorem", within=config),
         plasticity=lookup(dpath="plasticity", within=config),
+        limits=lookup(dpath="rates", within=config),
         seed=lookup(dpath="seed", within=config),
     message:
         "Collect the numbers that the text quotes"

@@ -33,6 +33,7 @@ def values(
     theorem,
     deformation,
     deformation_variance,
+    rates,
     variance,
     sweep,
     finite_p,
@@ -44,6 +45,7 @@ def values(
     density,
     limit_theorem,
     plasticity,
+    limits,
     seed,
 ):
     """Collect numbers from the artifacts and the configuration.
@@ -56,6 +58,8 @@ def values(
         Figure 2b's bands against exact curves; the corrected formulas.
     deformation, deformation_variance : xarray.Dataset
         The formula for the permanent deformation against Monte Carlo, and its gamma^2.
+    rates : xarray.Dataset
+        Table 10.
     convergence : list of xarray.Dataset
         Spectral solutions of table 4, one per n.
     drift_condition, ergodicity, errata : xarray.Dataset
@@ -63,8 +67,8 @@ def values(
     variance, sweep, finite_p, trajectories, scenes : dict
         Sections of the configuration: figure 2a, figure 2b, the corrected formulas, trajectories,
         every scene.
-    theorems, density, limit_theorem, plasticity : dict
-        Sections, too: table 7, figure 7, figure 8, figure 9.
+    theorems, density, limit_theorem, plasticity, limits : dict
+        Sections, too: table 7, figure 7, figure 8, figure 9, figure 12.
     horizon, scheme
         Horizon and finite differences of table 4.
     seed : int
@@ -139,6 +143,7 @@ def values(
             "tolerances": [_scientific(tolerance) for tolerance in density["tolerances"]],
         },
         "limit_theorem": _limit_theorem(theorem, limit_theorem),
+        "rates": _rates(rates, limits),
         "plasticity": _plasticity(deformation, deformation_variance, plasticity),
         "trajectories": {
             "step": f"{trajectories['step']:g}",
@@ -250,6 +255,26 @@ def _limit_theorem(theorem, section):
         "maximum_largest": f"{float(last['maximum'].max()):.3f}",
         "exponent_smallest": f"{exponents.max():.2f}",
         "exponent_largest": f"{exponents.min():.2f}",
+    }
+
+
+def _rates(rates, section):
+    """Exponents of n with their errors, by scene."""
+    return {
+        "paths": f"{section['paths']:,}",
+        "horizon": f"{section['horizon']:g}",
+        "weak_paths": f"{section['weak']['paths']:,}",
+        "weak_horizon": f"{section['weak']['horizon']:g}",
+        "exponents": {
+            str(name): {
+                kind: " plus.minus ".join(
+                    f"{float(rates[f'{kind}_exponent{suffix}'].sel(scene=name)):.2f}"
+                    for suffix in ("", "_error")
+                )
+                for kind in ("pathwise", "weak")
+            }
+            for name in rates["scene"].values
+        },
     }
 
 
