@@ -1,16 +1,17 @@
-# make paper · make test · make smoke · make lint · make benchmark · make lock · make clean
+# make paper · make test · make smoke · make lint · make benchmark · make peers · make diagrams ·
+# make lock · make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: env paper smoke test lint format benchmark lock clean
+.PHONY: env paper smoke test lint format benchmark peers diagrams lock clean
 
 paper: env
 	$(BIN)/snakemake --cores $(CORES)
 
 smoke: env
-	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml
+	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml -- all speed_against_error
 
 test: env
 	$(BIN)/python -m pytest
@@ -29,6 +30,16 @@ format: env
 # PEERS: python of an environment made from benchmarks/peers.txt, to measure them too
 benchmark: env
 	$(BIN)/python -m benchmarks.speed $(PEERS)
+
+# the peers' environment, which the work-precision diagrams then use
+peers:
+	$(PYTHON) -m venv .venv-peers
+	.venv-peers/bin/python -m pip install --disable-pip-version-check --progress-bar off -r benchmarks/peers.txt
+
+# measures anew, on an idle machine, and refreshes the copies in docs/
+diagrams: env
+	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_growth measure_pathwise measure_cost -- speed_against_error
+	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
 
 env: $(VENV)/installed
 

@@ -1,9 +1,19 @@
 # The pipeline: config -> scenes -> solve / simulate -> artifacts -> figures, tables -> paper.
 # This file validates the configuration, includes the rules and names the targets.
 import sys
+from pathlib import Path
 
 from workflow.dependencies import sources
-from workflow.experiment import check, finite, halving_paths, label, part, shards, sweep_halving
+from workflow.experiment import (
+    check,
+    ergodic_scenes,
+    finite,
+    halving_paths,
+    label,
+    part,
+    shards,
+    sweep_halving,
+)
 from nonsmooth.errors import NonsmoothError
 
 
@@ -26,6 +36,7 @@ wildcard_constraints:
     limit="[0-9.e+-]+",
     shard="[0-9]+",
     scene="[a-z0-9_]+",
+    diagram="[a-z_]+",
 
 
 rule all:
@@ -38,6 +49,7 @@ include: "workflow/rules/rheology.smk"
 include: "workflow/rules/trajectories.smk"
 include: "workflow/rules/variance.smk"
 include: "workflow/rules/crossing.smk"
+include: "workflow/rules/finite_p.smk"
 include: "workflow/rules/convergence.smk"
 include: "workflow/rules/growth.smk"
 include: "workflow/rules/sweep.smk"
@@ -46,4 +58,7 @@ include: "workflow/rules/errata.smk"
 include: "workflow/rules/density.smk"
 include: "workflow/rules/limit_theorem.smk"
 include: "workflow/rules/plasticity.smk"
+include: "workflow/rules/hard_cases.smk"
+include: "workflow/rules/rates.smk"
 include: "workflow/rules/paper.smk"
+include: "workflow/rules/speed_against_error.smk"

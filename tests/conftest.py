@@ -1,5 +1,6 @@
 """Shared fixtures: copies of the repository in which the workflow can run and be disturbed."""
 
+import runpy
 import shutil
 import subprocess
 import sys
@@ -13,12 +14,15 @@ from nonsmooth.schemes import strang
 ROOT = Path(__file__).parents[1]
 TRACKED = (
     "Snakefile",
+    "benchmarks",
     "config.yaml",
     "config",
     "workflow",
     "src",
     "paper",
     "profiles",
+    "docs/speed_pde.pdf",
+    "docs/speed_crossing.pdf",
     "environment-lock.txt",
     "pyproject.toml",
 )
@@ -76,6 +80,7 @@ def copy_repository(destination, *extra):
             skip = shutil.ignore_patterns("__pycache__", "*.pdf", "*.egg-info")
             shutil.copytree(source, destination / name, ignore=skip)
         else:
+            (destination / name).parent.mkdir(exist_ok=True)
             shutil.copy2(source, destination / name)
     return Repository(destination)
 
@@ -90,7 +95,7 @@ def repository(tmp_path):
 def smoke_run(tmp_path_factory):
     """Return a repository in which the whole workflow has run at reduced sizes."""
     repository = copy_repository(tmp_path_factory.mktemp("smoke"))
-    run = repository.snakemake("--cores", "2")
+    run = repository.snakemake("--cores", "2", "--", "all", "speed_against_error")
     assert run.returncode == 0, run.stderr[-4000:]
     return repository
 
@@ -101,3 +106,10 @@ def finished(smoke_run, tmp_path):
     folder = tmp_path / "copy"
     shutil.copytree(smoke_run.folder, folder, symlinks=True)
     return Repository(folder)
+
+
+@pytest.fixture
+def script():
+    """Return a function that loads a script of the topic speed_against_error."""
+    folder = ROOT / "workflow" / "scripts" / "speed_against_error"
+    return lambda name: runpy.run_path(str(folder / f"{name}.py"))

@@ -3,11 +3,15 @@
 import mpmath
 import numpy as np
 import pytest
+from scipy.integrate import simpson
+from scipy.interpolate import CubicSpline
 from scipy.special import erfc
 
 import nonsmooth as ns
 from nonsmooth.laplace import hyperbola
 from nonsmooth.milne import expansion
+from nonsmooth.ordinates import ordinates
+from nonsmooth.transport import first_passage
 
 FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
 DIGITS = 1e-7  # a unit in the last of seven
@@ -101,6 +105,30 @@ class TestSpectral:
         assert found.probability_error[0] >= 1e-14
         assert np.all(np.diff(found.probability) > 0)
         assert found.probability_error[1] < 1e-3 * found.probability[1] < 1e-10
+
+    @pytest.mark.parametrize(("threshold", "p"), [(0.05, 1), (0.6, 0.01), (3.0, 30)])
+    def test_a_curve_over_four_decades(self, threshold, p):
+        """A distribution that rises from nothing, within the error asked for."""
+        found = exact(threshold, np.geomspace(0.01, 100, 20), p)
+        errors = found.probability_error.values
+        assert np.all(np.diff(found.probability) >= -errors[1:] - errors[:-1])
+        assert np.all(found.probability_error <= 1e-7)
+        assert found.probability[0] < 1e-8
+        assert found.probability[-1] > 0.5
+
+    def test_transform_of_the_rise(self):
+        """The values have the transform at 2 that comes from a finer grid, on the axis.
+
+        A cubic spline of log P through 28 points per decade leaves less than 1e-5.
+        """
+        times = np.geomspace(0.3, 40.0, 60)
+        found = exact(0.6, times, 1).probability.values
+        seen = found > 0
+        spline = CubicSpline(np.log(times[seen]), np.log(found[seen]))
+        fine = np.geomspace(times[seen][0], times[-1], 20_001)
+        transform = simpson(2 * np.exp(-2 * fine + spline(np.log(fine))), x=fine)
+        expected = first_passage(ordinates(FRICTION, 13, 0.1), 2.0, -0.6, 0.6).real
+        assert transform == pytest.approx(expected, rel=1e-5)
 
     def test_other_scenes_are_told_to_sample(self):
         """The message names the method to use."""

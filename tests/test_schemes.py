@@ -138,6 +138,7 @@ class TestOrder:
         [
             ("strang", (1.3e-3, 1.6e-4, 2.1e-5)),
             ("drift_implicit", (-1.3e-2, -3.0e-3, -7.7e-4)),
+            ("lie", (-1.9e-2, -4.0e-3, -1.0e-3)),
         ],
     )
     def test_across_the_kink(self, name, published):
@@ -205,7 +206,9 @@ class TestStability:
     @pytest.mark.parametrize("name", SCHEMES)
     def test_against_the_declared_range(self, name):
         """A stiff linear scene stays bounded below the longest step and blows up above it."""
-        model = "friction" if name in ("dry_friction", "drift_implicit") else "elasto_plastic"
+        model = (
+            "friction" if name in ("dry_friction", "drift_implicit", "lie") else "elasto_plastic"
+        )
         n = np.inf if name == "dry_friction" else 1e6
         scene = ns.Scene(model, n=n, observable="y" if model == "friction" else "x")
         longest = SCHEMES[name].longest_step(scene)

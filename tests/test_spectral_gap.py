@@ -8,16 +8,27 @@ from nonsmooth.errors import SceneError
 from nonsmooth.trajectories import paths_at
 
 
-@pytest.mark.parametrize(("damping", "stiffness"), [(1.0, 1.0), (3.0, 1.0), (0.6, 2.0)])
+def linear(damping, stiffness):
+    """Make a linear scene, an obstacle too soft to be felt."""
+    potential = f"{stiffness}*x**2/2"
+    return ns.Scene("obstacle", n=1e-14, damping=damping, potential=potential, observable="x")
+
+
+@pytest.mark.parametrize(
+    ("damping", "stiffness"), [(1.0, 1.0), (3.0, 1.0), (0.6, 2.0), (2.0, 1.0), (2.000001, 1.0)]
+)
 def test_linear_oscillator(damping, stiffness):
-    """The eigenvalues of an Ornstein-Uhlenbeck process are sums of those of its drift matrix."""
-    scene = ns.Scene(
-        "obstacle", n=1e-9, damping=damping, potential=f"{stiffness}*x**2/2", observable="x"
-    )
+    """The slowest eigenvalue is that of the drift, exact for polynomials; rounding, if double."""
     exact = -np.linalg.eigvals([[-damping, -stiffness], [1.0, 0.0]]).real.max()
-    found = ns.spectral_gap(scene, tol=1e-5)
-    # the error of the last of two grids is below their difference; 1e-8 for the soft walls
-    assert abs(found.value - exact) <= found.error + 1e-8
+    found = ns.spectral_gap(linear(damping, stiffness), tol=1e-5)
+    assert abs(found.value - exact) <= found.error
+    assert found.error < (1e-5 if damping == pytest.approx(2.0) else 1e-8)
+
+
+def test_friction_waits_for_the_noise():
+    """The forcing's own rate theta, where friction forgets faster than it."""
+    found = ns.spectral_gap(ns.Scene("friction", ns.OrnsteinUhlenbeck(0.3), n=3), tol=1e-4)
+    assert abs(found.value - 0.3) <= found.error
 
 
 def test_dry_friction_in_the_limit():

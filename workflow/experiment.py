@@ -37,10 +37,10 @@ def check(config):
                 "choose friction with potential '0' and g of y"
             )
         nodes = config[topic].get("finite_difference", {}).get("nodes", 1)
-        if nodes % 4 != 1:
+        if nodes % 8 != 1:
             raise ConfigError(
-                f"config: '{topic}.finite_difference.nodes' = {nodes}: (N - 1)/4 must be an "
-                f"integer, so that the mesh can be halved; use {nodes // 4 * 4 + 1}"
+                f"config: '{topic}.finite_difference.nodes' = {nodes}: (N - 1)/8 must be an "
+                f"integer, so that the mesh and the domain can be halved; use {nodes // 8 * 8 + 1}"
             )
     _check_times(config["variance"])
     for key, topic in (("sweep.variance", "sweep"), ("growth.potentials", "growth")):
@@ -52,16 +52,25 @@ def check(config):
     for parameters in config["growth"]["potentials"]["scenes"]:
         by_formulas(parameters)
     _check_theorems(config["theorems"])
-    for topic in ("growth", "density", "limit_theorem"):
-        for name in config[topic]["scenes"]:
+    lists = {topic: config[topic]["scenes"] for topic in ("growth", "density", "limit_theorem")}
+    lists["theorems.ergodicity"] = config["theorems"]["ergodicity"]["scenes"]
+    for topic, names in lists.items():
+        for name in names:
             if name not in config["sweep"]["scenes"]:
                 raise ConfigError(
                     f"config: '{topic}.scenes' has {name!r}, which is not a scene of the sweep; "
                     f"choose from {', '.join(config['sweep']['scenes'])}"
                 )
+    for name, parameters in ergodic_scenes(config).items():
+        if len(Scene(**parameters).state) > 2:
+            raise SceneError(
+                f"config: 'theorems.ergodicity.scenes' has {name!r}, which has more than two state "
+                "variables; choose scenes with one or two"
+            )
     p = config["limit_theorem"]["p"]
     if sorted(set(p)) != p:
         raise ConfigError(f"config: 'limit_theorem.p' = {p} must increase; sort them")
+    _check_finite_p(config["finite_p"], config["crossing"])
     yielding_oscillator(config["plasticity"]["ground"], config["plasticity"]["oscillator"])
     for model, parameters in config["trajectories"]["models"].items():
         Scene(model, potential=parameters["potential"], damping=parameters["damping"])
@@ -74,6 +83,26 @@ def check(config):
                 f"config: outputs.{key} = {path!r}: cannot write into {str(folder)!r}; "
                 "make it writable or choose another folder"
             )
+
+
+def _check_finite_p(finite_p, crossing):
+    """Table 9's T is one of the formulas' and of Monte Carlo's."""
+    for key in ("p", "horizons"):
+        if sorted(set(finite_p[key])) != finite_p[key]:
+            raise ConfigError(
+                f"config: 'finite_p.{key}' = {finite_p[key]} must increase; sort them"
+            )
+    horizon, interval = finite_p["tabulated"], crossing["horizon"] / crossing["outputs"]
+    if horizon not in finite_p["horizons"] or not _divides(interval, horizon):
+        raise ConfigError(
+            f"config: 'finite_p.tabulated' = {horizon} must be one of finite_p.horizons and a "
+            f"multiple of crossing.horizon/crossing.outputs = {interval:g}; change it"
+        )
+    if finite_p["first_time"] > 0.5 * crossing["horizon"]:
+        raise ConfigError(
+            f"config: 'finite_p.first_time' = {finite_p['first_time']} leaves less than half of "
+            f"crossing.horizon = {crossing['horizon']}; lower it"
+        )
 
 
 def _check_theorems(theorems):
@@ -121,6 +150,12 @@ def _divides(part, whole):
 def label(number):
     """Spell a number of the configuration as it stands in file names."""
     return f"{float(number):.17g}"
+
+
+def ergodic_scenes(config):
+    """Parameters of the scenes of table 7b: a dict from names, in the order of the table."""
+    scenes = config["sweep"]["scenes"]
+    return {name: scenes[name]["scene"] for name in config["theorems"]["ergodicity"]["scenes"]}
 
 
 def shards(topic):

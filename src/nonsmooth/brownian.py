@@ -98,7 +98,7 @@ class _Path:
         ):
             if np.any(wrong):
                 raise SceneError(f"Brownian motion from 0 needs {need}; choose such a one")
-        self.began = T > 0
+        self.began = T != 0
         self.T = np.where(T == 0, 1.0, T)
         near, far = np.minimum(b, -lower), np.maximum(b, -lower)
         reach = _REACH * np.sqrt(self.T)

@@ -81,6 +81,8 @@ def poisson_slope(scene):
     energy, _ = spectral.potential(scene)
     depth = vectorised(energy, (models.y,))
     reach = 1.0
+    while depth(reach / 1.1) > _NEGLIGIBLE:
+        reach /= 1.1
     while depth(reach) < _NEGLIGIBLE:
         reach *= 1.1
     y = np.linspace(-reach, reach, _POINTS)

@@ -29,6 +29,9 @@ from nonsmooth.trajectories import (
     require_finite,
     require_increasing,
     require_positive,
+    require_resolved,
+    step_bias,
+    variance_of_fine,
 )
 from nonsmooth.variance import asymptotic_variance, stationary_mean
 
@@ -116,7 +119,14 @@ def first_passage_bias(scene, threshold, horizons, p, step, paths, seed, threads
     """
     times = p * np.asarray(horizons, dtype=float)
     levels = np.sqrt(p) * np.array(bounds(threshold))
-    _, (fine, coarse) = coupled(scene, times, step, paths, seed, threads, levels)
+    _, passage = coupled(scene, times, step, paths, seed, threads, levels)
+    return _bias_of_counts(scene, times, passage)
+
+
+def _bias_of_counts(scene, times, passage):
+    """Bias of the fraction crossed, from first-passage times with half the step and the step."""
+    fine, coarse = passage
+    paths = len(fine)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
     factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
     # where no path changed sides, as if one had
@@ -234,6 +244,8 @@ def crossing_probability(
     SceneError
         If a parameter is out of range, the method unknown or without such a parameter, or if the
         asymptotic formula is asked for a g whose stationary mean is not 0.
+    ToleranceError
+        If `tol` cannot be met, or a step is so long that halving it does not measure its bias.
     """
     threshold = bounds(threshold)
     horizons = np.atleast_1d(np.asarray(horizons, dtype=float))
@@ -285,9 +297,12 @@ def _monte_carlo(
         *problem, step, paths, seed, threads=threads, precision=precision
     )
     values = crossing_estimate(np.cumsum(crossed), paths)
-    values["step_bias"], values["step_bias_error"] = first_passage_bias(
-        *problem, step, fewer, labelled(seed, "halving"), threads
-    )
+    times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
+    own = labelled(seed, "halving")
+    change, passage = coupled(scene, times, step, fewer, own, threads, levels)
+    bias, error = step_bias(change, schemes.scheme(scene).weak_order(scene))
+    require_resolved(step, variance_of_fine(change)[-1], bias[-1], error[-1])
+    values["step_bias"], values["step_bias_error"] = _bias_of_counts(scene, times, passage)
     return values, {"step": step, "paths": paths}
 
 

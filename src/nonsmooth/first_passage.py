@@ -5,30 +5,36 @@ window. Where the probability, or the survival probability, is small, its contou
 saddle point or at the leading pole instead of 0: the error is then relative.
 """
 
-import bisect
-from functools import lru_cache
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar, root_scalar
+from scipy.interpolate import CubicSpline
+from scipy.optimize import root_scalar
 
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.laplace import hyperbola
+from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
 from nonsmooth.spectral import applies
 from nonsmooth.transport import first_passage
 
-# polynomial degree, nodes of a contour for a single time; more, of larger real part, would only
-# make the rounding errors grow
-_LEVELS = ((7, 9), (9, 11), (11, 12), (14, 13))
+# polynomial degree; nodes of a contour for a single time, and their spacing while the probability
+# rises; more nodes, of larger real part, would only make the rounding errors grow
+_LEVELS = ((7, 9, 0.85), (9, 11, 0.75), (11, 12, 0.7), (14, 13, 0.65))
 _PER_DECADE = 10  # nodes more for each decade of times
-# half angles about the negative axis: of the poles; while the probability rises, its transform
-# grows there, like exp(-c z^(3/4)) for a noise that is integrated twice
-_SECTOR, _WIDE_SECTOR, _WIDER = 0.3, 1.0, 2  # the last: times as many nodes
-_WINDOW, _NARROW = 10.0, 1.6  # last time over first time, of a contour; while it rises
-_NEGLIGIBLE, _RISEN = 1e-14, 0.5  # bounds of the probability; below the first, it is taken as 0
+_SECTOR = 0.3  # half angle about the negative axis, of the poles
+# last time over first time, of a contour; while the probability rises, and the rise then
+_WINDOW, _NARROW, _GROWTH = 5.0, 2.5, 300.0
+_NEGLIGIBLE, _RISEN = 1e-14, 0.95  # bounds of the probability; below the first, it is taken as 0
+_LATER = 2.0  # the end of the rise, relative to the last time whose bound is below _RISEN
 _FINELY = 0.7  # grading of the elements while the probability rises
+_LAST = 1e-15  # terms of a contour through a saddle, relative to the first
+# of the decay per relaxation time of a slow crossing, as measured against the second order formula
+_ROUNDING = 1e-13
 _SMALL = 1e-3  # survival probabilities below get contours of their own
-_UNDERFLOW = 1e-300
+_UNDERFLOW, _ROUNDED = 1e-300, 1e-70
+_AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
+_SPARE = 18.0  # exponent of what is neglected, relative to the probability
+_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z in the search for saddles
 
 
 def spectral_crossing(scene, lower, upper, times, tol):
@@ -62,12 +68,14 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"the spectral method needs the state (y) and white noise, not "
             f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
         )
-    begins, rises = _rise(scene, lower, upper, times)
-    solution = _solve(scene, lower, upper, times, begins, rises, *_LEVELS[0])
+    saddles = _saddles(scene, lower, upper, times)
+    solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[0])
     for level in _LEVELS[1:]:
-        coarse, solution = solution, _solve(scene, lower, upper, times, begins, rises, *level)
-        error = np.abs(solution - coarse) + 1e-13 * solution + _UNDERFLOW
-        error[0] = np.where(solution[0] == 0, _NEGLIGIBLE, error[0])
+        coarse, solution = solution, _solve(scene, lower, upper, times, saddles, *level)
+        error = _largest_nearby(np.abs(solution - coarse), solution, times)
+        error += 1e-13 * solution + _UNDERFLOW
+        error += _ROUNDING * scene.damping * times * solution[0] * solution[1]
+        error[0] = np.where(solution[0] == 0, np.maximum(_NEGLIGIBLE, error[0]), error[0])
         # the same event: what is known of the rarer of the two is known of both
         least = error.min(axis=0)
         error = np.where(error > 1e-12, least + 1e-15, error)
@@ -86,100 +94,133 @@ def spectral_crossing(scene, lower, upper, times, tol):
     }
 
 
-def _windows(times, first, end, ratio):
-    """Slices of increasing times whose last is at most `ratio` times the first."""
+def _largest_nearby(errors, values, times):
+    """Largest error within a factor of two in time, for single ones may vanish by chance.
+
+    Those of larger values count relative to the value.
+    """
+    near = np.abs(np.log(times[:, None] / times)) <= np.log(2)
+    values = np.maximum(values, _UNDERFLOW)
+    share = np.minimum(values[:, :, None] / values[:, None, :], 1.0)
+    return np.max(near * share * errors[:, None, :], axis=2)
+
+
+@dataclass(frozen=True)
+class _Saddles:
+    """Saddle points on the axis of the integrand exp(z t) F(z) / z of the probability.
+
+    Attributes
+    ----------
+    place, width : numpy.ndarray, shape (k,)
+        z, and the standard deviation along a contour through it, for each time.
+    bound : numpy.ndarray, shape (k,)
+        Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
+    """
+
+    place: np.ndarray
+    width: np.ndarray
+    bound: np.ndarray
+
+
+def _saddles(scene, lower, upper, times):
+    """Find them by a spline of the transform on the axis."""
+    first, last = np.log([0.1 / times[-1], _LARGEST / times[0]])
+    log_z, log_F = np.arange(first, last + _AXIS, _AXIS), []
+    for z in np.exp(log_z):
+        # the saddle of the time t is where z t = d log F / d log z, which is less than log F
+        depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
+        grid = ordinates(
+            scene, _LEVELS[0][0], depth / z, _FINELY, _reach(scene, depth / z, depth / 2)
+        )
+        value = first_passage(grid, z, lower, upper).real
+        if value < _ROUNDED:
+            break
+        log_F.append(np.log(value))
+    last = log_z[len(log_F) - 1]
+    spline = CubicSpline(log_z[: len(log_F)], log_F)
+    fine = np.linspace(first, last, int((last - first) / _FINE))
+    z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
+    bound, place, width = [], [], []
+    for t in times:
+        bound.append(np.min(z * t + cumulant))
+        best = np.argmin(z * t + cumulant - fine)
+        place.append(z[best])
+        # second derivative in z of the exponent, log z among it
+        width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
+    return _Saddles(np.array(place), np.array(width), np.maximum.accumulate(bound))
+
+
+def _reach(scene, time, depth):
+    """Change of velocity that is exceeded by `time` with at most 4 exp(-depth - _SPARE).
+
+    That of Brownian motion without drift, which points to the origin.
+    """
+    return scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
+
+
+def _windows(first, end, *growing):
+    """Slices of indices over which increasing values grow at most by the factor beside them."""
     while first < end:
-        last = min(end, int(np.searchsorted(times, times[first] * ratio, "right")))
-        yield slice(first, last)
-        first = last
+        last = min(np.searchsorted(v, v[first] * factor, "right") for v, factor in growing)
+        yield slice(first, min(end, int(last)))
+        first = int(last)
 
 
-def _rise(scene, lower, upper, times):
-    """Places of the first times at which the probability is not negligible, and has risen."""
-
-    @lru_cache
-    def bound(k):
-        grid = ordinates(scene, _LEVELS[0][0], times[k], _FINELY)
-        return _chernoff(grid, lower, upper, times[k])[0]
-
-    begins = bisect.bisect_left(range(len(times)), _NEGLIGIBLE, key=bound)
-    return begins, bisect.bisect_left(range(len(times)), _RISEN, lo=begins, key=bound)
-
-
-def _solve(scene, lower, upper, times, begins, rises, degree, count):
+def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     """Probability and survival probability, shape (2, k)."""
-
-    def grid(where, **graded):
-        return ordinates(scene, degree, times[where][0], **graded)
-
+    begins, rises = np.searchsorted(saddles.bound, np.log([_NEGLIGIBLE, _RISEN]))
+    if rises > begins:  # contours around the poles need some time more
+        rises = max(rises, np.searchsorted(times, _LATER * times[rises - 1]))
     found = np.zeros((2, len(times)))
-    for here in _windows(times, begins, rises, _NARROW):
-        fine = grid(here, grading=_FINELY)
-        _, saddle = _chernoff(fine, lower, upper, times[here][0])
-        found[0, here] = _invert(
-            fine, lower, upper, times[here], count, _WIDE_SECTOR, saddle, _probability
-        )
-    for here in _windows(times, rises, len(times), _WINDOW):
-        found[0, here] = _invert(
-            grid(here), lower, upper, times[here], count, _SECTOR, 0.0, _probability
-        )
+
+    def transform(where, **graded):
+        reach = _reach(scene, times[where][-1], -saddles.bound[where][0])
+        grid = ordinates(scene, degree, times[where][0], reach=reach, **graded)
+        return lambda z: first_passage(grid, z, lower, upper)
+
+    def around_poles(where, first=0.0):
+        """Contour to the right of the poles, of which `first` is the largest."""
+        begin, end = times[where][0], max(times[where][-1], 1.01 * times[where][0])
+        nodes = round(count + _PER_DECADE * np.log10(end / begin))
+        return hyperbola(begin, end, nodes, _SECTOR, first)
+
+    for here in _windows(begins, rises, (times, _NARROW), (np.exp(saddles.bound), _GROWTH)):
+        last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
+        contour = through_saddle(saddles.place[last], saddles.width[last], spacing)
+        found[0, here] = _probability(transform(here, grading=_FINELY), contour, times[here])
+    for here in _windows(rises, len(times), (times, _WINDOW)):
+        found[0, here] = _probability(transform(here), around_poles(here), times[here])
     found[1] = 1 - found[0]
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
     if late < len(times) and np.isfinite(lower) and np.isfinite(upper):
-        pole = _leading_pole(grid(slice(late, None)), lower, upper, times[late])
-        for here in _windows(times, late, len(times), _WINDOW):
-            found[1, here] = _invert(
-                grid(here), lower, upper, times[here], count, _SECTOR, pole, _survival
-            )
+        pole = _leading_pole(transform(slice(late, None)), times[late])
+        for here in _windows(late, len(times), (times, _WINDOW)):
+            found[1, here] = _survival(transform(here), around_poles(here, pole), times[here])
             found[0, here] = 1 - found[1, here]
-    return found
+    return np.clip(found, 0.0, 1.0)
 
 
-def _probability(transform, z):
-    return transform / z
+def _probability(transform, contour, times):
+    values = []
+    for z, weight in zip(contour.nodes, contour.weights, strict=True):
+        values.append(transform(z) / z)
+        term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
+        if len(values) == 1:
+            largest = term
+        elif term < _LAST * largest:
+            break
+    return contour.until(len(values)).invert(np.array(values), times)
 
 
-def _survival(transform, z):
-    return (1 - transform) / z
+def _survival(transform, contour, times):
+    return contour.invert(np.array([(1 - transform(z)) / z for z in contour.nodes]), times)
 
 
-def _invert(grid, lower, upper, times, count, sector, begin, transform):
-    """Invert on a contour that crosses the axis at `begin` or, if that is left of it, at its own.
-
-    The pole a survival probability begins at is negative: there the contour keeps clear of it.
-    """
-    window = times[0], max(times[-1], 1.01 * times[0])
-    count = count * (_WIDER if sector == _WIDE_SECTOR else 1)
-    own = hyperbola(*window, round(count + _PER_DECADE * np.log10(window[1] / window[0])), sector)
-    shift = begin if begin < 0 else max(0.0, begin - own.nodes[0].real)
-    nodes = own.nodes + shift
-    values = [transform(first_passage(grid, z, lower, upper), z) for z in nodes]
-    return np.exp(shift * times) * own.invert(np.array(values), times)
-
-
-def _chernoff(grid, lower, upper, time):
-    """Least value of exp(z t) E exp(-z tau) over z > 0, a bound of P(tau <= t), and its place."""
-
-    def height(log_z):
-        z = np.exp(log_z)
-        value = first_passage(grid, z, lower, upper).real
-        # where the grid does not resolve the modes, it is not a transform of a probability
-        return z * time + (np.log(value) if 0 < value < 1 else 0.0)
-
-    least = minimize_scalar(
-        height,
-        bounds=np.log(np.array([1e-2, 120.0]) / time),
-        method="bounded",
-        options={"xatol": 0.02},
-    )
-    return float(np.exp(least.fun)), float(np.exp(least.x))
-
-
-def _leading_pole(grid, lower, upper, time):
+def _leading_pole(transform, time):
     """Largest pole of E exp(-z tau); at `time`, the survival probability is about _SMALL."""
 
     def inverse(z):
-        return (1 / first_passage(grid, z, lower, upper)).real
+        return (1 / transform(z)).real
 
     rate = -np.log(_SMALL) / time
     return float(root_scalar(inverse, x0=-rate / 2, x1=-0.8 * rate, rtol=1e-14).root)

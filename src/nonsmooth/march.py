@@ -18,7 +18,7 @@ from nonsmooth.panel import (
     observe,
     retire,
 )
-from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, strang
+from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, lie, strang
 from nonsmooth.streams import normals
 
 
@@ -35,6 +35,7 @@ _MODULES = {
     euler_maruyama.EulerMaruyama: euler_maruyama,
     drift_implicit.DriftImplicit: drift_implicit,
     dry_friction.DryFriction: dry_friction,
+    lie.Lie: lie,
 }
 
 

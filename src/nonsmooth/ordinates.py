@@ -93,7 +93,7 @@ def _solve_scaled(matrix, right):
     return scale[:, None] * np.linalg.solve(matrix * np.outer(scale, scale), scale[:, None] * right)
 
 
-def ordinates(scene, degree, time, grading=_GRADING):
+def ordinates(scene, degree, time, grading=_GRADING, reach=np.inf):
     """Discretise a scene with the state y.
 
     Parameters
@@ -105,6 +105,8 @@ def ordinates(scene, degree, time, grading=_GRADING):
         Shortest time of interest, "1".
     grading : float
         Greatest width of an element over its distance to a zero of g and to the start.
+    reach : float
+        Largest change of velocity that matters.
 
     Returns
     -------
@@ -115,7 +117,13 @@ def ordinates(scene, degree, time, grading=_GRADING):
     expression = scene.numerical_observable()
     observable = vectorised(expression, (models.y,))
     edges = _edges(
-        scene, depth, [knot, -knot], [expression, *quadrature.switches(expression)], time, grading
+        scene,
+        depth,
+        [knot, -knot],
+        [expression, *quadrature.switches(expression)],
+        time,
+        grading,
+        reach,
     )
     axis = continuous(edges, degree)
     y = axis.nodes
@@ -153,7 +161,7 @@ def _stiffness(axis, degree, density):
     return matrix
 
 
-def _edges(scene, depth, kinks, switches, time, grading):
+def _edges(scene, depth, kinks, switches, time, grading, reach):
     """Edges on kinks and on zeros of g, graded towards these and towards the start."""
     start = scene.start.get("y", 0.0)
     end = scene.noise.sigma * np.sqrt(_DEEPEST / scene.damping)
@@ -164,7 +172,7 @@ def _edges(scene, depth, kinks, switches, time, grading):
     fine = min(
         np.sqrt(np.sum(weight * inside**2) / np.sum(weight)), scene.noise.sigma * np.sqrt(time)
     )
-    end = max(end, abs(start) + _REACH * fine)
+    end = min(max(end, abs(start) + _REACH * fine), abs(start) + reach)
     inside = np.linspace(-end, end, 501)
     functions = [vectorised(f, (models.y,)) for f in switches]
     zeros, *others = [quadrature.sign_changes(f, inside) for f in functions]

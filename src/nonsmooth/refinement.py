@@ -58,7 +58,8 @@ class Grid:
 def solver(scene, grid):
     """Discretise a scene; returns the axes and the solver of its Poisson equation."""
     axes = mesh.axes(scene, grid.ends, grid.levels, grid.margin)
-    mirrored = scene.is_odd()
+    nodes = math.prod(len(axis.nodes) for axis in axes.values())
+    mirrored = scene.is_odd() and nodes % 2 == 0  # no node is its own mirror image
     if len(axes) <= 2:
         return axes, Direct(scene, axes, mirrored)
     return axes, Split(scene, axes, mirrored, grid.shift)

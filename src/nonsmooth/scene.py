@@ -1,6 +1,7 @@
 """A scene: mechanical model + noise + potential + damping + penalization + observable."""
 
 import difflib
+import itertools
 import math
 import warnings
 from dataclasses import dataclass, field, replace
@@ -104,6 +105,7 @@ class Scene:
                 f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
             )
         self._warn_if_not_confined()
+        self._warn_if_g_grows()
 
     def _warn_if_not_confined(self):
         """Warn if U_n grows less than quadratically (hyp:HU2b); reads the formula of U.
@@ -118,6 +120,35 @@ class Scene:
             warnings.warn(
                 f"U = {self.potential!r} violates (HU2), U(x) >= c x**2 - C: the paper's theorems "
                 "do not cover this scene; add a confining term such as x**2/2",
+                AssumptionWarning,
+                stacklevel=4,
+            )
+
+    def _warn_if_g_grows(self):
+        """Warn unless g^2 <= C V_n, which Theorem thm3 asks for; reads the formula of g.
+
+        V_n grows like the energy, |z|^2 + U. Looked at are the origin, and far out the axes and
+        the diagonals.
+        """
+        if self.observes_penalty_force:
+            return
+        used = [s for s in self.variables if s in self.observable_expression.free_symbols]
+        signs = np.array(list(itertools.product([-1, 0, 1], repeat=len(used))), dtype=float)
+        place = {s: signs[:, [k]] * noises.FAR for k, s in enumerate(used)}
+        if x in place and math.isinf(self.n) and self.model in ("elasto_plastic", "obstacle"):
+            place[x] = np.clip(place[x], -1, 1)
+        with np.errstate(all="ignore"):
+            V = 1 + sum(value**2 for value in place.values())
+            if x in place:
+                V = V + np.abs(vectorised(self.potential_expression, (x,))(place[x]))
+            g = vectorised(self._with_numbers(self.observable_expression), tuple(used))
+            ratio = np.abs(g(*place.values())) / np.sqrt(V)
+        growth = np.broadcast_to(ratio, (len(signs), len(noises.FAR)))
+        if not (np.all(np.isfinite(growth)) and np.all(10 * growth[:, 0] + 1 >= growth[:, 1:].T)):
+            warnings.warn(
+                f"g = {self.observable!r} violates g**2 <= V, V the Lyapunov function, which grows "
+                "like the energy: the paper's limit theorem does not cover this scene, and int g "
+                "may have no variance; choose a g that stays finite and grows less",
                 AssumptionWarning,
                 stacklevel=4,
             )

@@ -5,7 +5,7 @@ Elements have their edges on the kinks of the drift and are graded towards them,
 convergence in the polynomial degree is exponential for every penalization.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 
@@ -80,9 +80,16 @@ def mesh(scene):
     energy, knot = potential(scene)
     depth = vectorised(energy, (models.y,))
     end = 1.0
+    while depth(end / 1.25) > _NEGLIGIBLE:
+        end /= 1.25
     while depth(end) < _NEGLIGIBLE:
         end *= 1.25
     start = abs(scene.start.get("y", 0.0))
+    if depth(start) > _NEGLIGIBLE:
+        raise SceneError(
+            f"the start y = {scene.start['y']:g} is too far in the tails, where spectral elements "
+            "weighted by the stationary density have no digits; start nearer or use simulate"
+        )
     end = max(end, 1.5 * start)
     knot = min(knot, end)  # beyond, the kink is never seen
     outer = [knot]
@@ -140,14 +147,26 @@ def assemble(scene, degree):
         where[here] = left + half * (nodes + 1)
         at = left + half * (points + 1)
         weight = weights * half * np.exp(-depth(at))
+        values_of_g = _finite(g, at, scene)
         mass[here, here] += values.T @ (weight[:, None] * values)
-        observable[here, here] += values.T @ ((weight * g(at))[:, None] * values)
+        observable[here, here] += values.T @ ((weight * values_of_g)[:, None] * values)
         local = slopes.T @ ((weight / half**2)[:, None] * slopes)
         # constants have no energy: enforced, or rounding of the smallest elements costs digits
         stiffness[here, here] += local - np.diag(local.sum(axis=1))
     total = mass.sum()
     factor = scene.noise.sigma**2 / 2
     return where, mass / total, factor * stiffness / total, observable / total
+
+
+def _finite(g, at, scene):
+    with np.errstate(all="ignore"):
+        value = g(at)
+    if not np.all(np.isfinite(value)):
+        raise SceneError(
+            f"g = {scene.observable!r} is not finite at y = {at[~np.isfinite(value)][0]:g}; "
+            "choose one that is, or write it so that it does not overflow"
+        )
+    return value
 
 
 def spectrum(scene, degree):
@@ -185,7 +204,7 @@ def spectrum(scene, degree):
 
 def mean(scene, degree=12):
     """Stationary mean of the observable."""
-    return assemble(scene, degree)[3].sum()
+    return assemble(replace(scene, start={}), degree)[3].sum()
 
 
 def rounding(scene, degree):

@@ -9,7 +9,7 @@ import xarray as xr
 
 from nonsmooth import schemes
 from nonsmooth.control import poisson_slope
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.march import march, march_pair
 from nonsmooth.models import STATE_VARIABLES
 from nonsmooth.panel import STATE, TOTAL_DELTA, new_panel
@@ -257,11 +257,28 @@ def step_bias(change, order):
     count = change[:, :1, 0]
     average = change[:, 0] / count
     covariance = change / count[..., None] - average[:, :, None] * average[:, None, :]
-    mean = average[:, 3]
-    weights = np.stack([0 * mean, -2 * mean, 0 * mean + 1, 0 * mean], axis=1)
+    shift, square, mean = average[:, 1:].T
+    # Var D_h - Var D_h/2, and its derivatives by the averages
+    value = square - shift * (2 * mean + shift)
+    weights = np.stack([0 * mean, -2 * (mean + shift), 0 * mean + 1, -2 * shift], axis=1)
     factor = 1 / (1 - 2**-order)
     variance = np.einsum("ti,tij,tj->t", weights, covariance, weights)
-    return factor * np.sum(weights * average, axis=1), factor * np.sqrt(variance / count[:, 0])
+    return factor * value, factor * np.sqrt(np.maximum(variance, 0.0) / count[:, 0])
+
+
+def mean_bias(change, order):
+    """Bias of the mean of D by the step, and its standard error; see `step_bias`."""
+    count = change[:, 0, 0]
+    shift = change[:, 0, 1] / count
+    spread = np.sqrt(np.maximum(change[:, 1, 1] / count - shift**2, 0.0) / count)
+    factor = 1 / (1 - 2**-order)
+    return factor * shift, factor * spread
+
+
+def variance_of_fine(change):
+    """Variance of D with the half step, from `coupled`, shape (t,)."""
+    count = change[:, 0, 0]
+    return change[:, 3, 3] / count - (change[:, 0, 3] / count) ** 2
 
 
 def simulate(
@@ -309,14 +326,17 @@ def simulate(
     -------
     xarray.Dataset
         ``"moments"``, over time: `mean` and `variance` of int_0^t g with their standard errors
-        `mean_error`, `variance_error`, and `variance_bias`, the bias of the time step
-        as measured by halving it, with `variance_bias_error`. ``"paths"``: the variables of the
-        scene's state and `delta`, each (path, time), time 0 included. Attributes `step`, `paths`.
+        `mean_error`, `variance_error`, and `mean_bias` and `variance_bias`, the biases of the time
+        step as measured by halving it, with `mean_bias_error`, `variance_bias_error`.
+        ``"paths"``: the variables of the scene's state and `delta`, each (path, time), time 0
+        included. Attributes `step`, `paths`.
 
     Raises
     ------
     SceneError
         If a parameter is out of range, or a path diverges.
+    ToleranceError
+        If the step is so long that halving it does not measure its bias.
     """
     if keep not in ("moments", "paths"):
         raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
@@ -343,8 +363,12 @@ def simulate(
         )
     found = moments(gram(scene, times, step, paths, seed, 0, threads, scheme, precision=precision))
     fewer = min(paths, max(PILOT_PATHS, paths // 8))
-    found["variance_bias"], found["variance_bias_error"] = _bias(
+    for name, bias in _bias(
         scene, times, step, fewer, labelled(seed, "halving"), threads, scheme
+    ).items():
+        found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
+    require_resolved(
+        step, *(found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))
     )
     return xr.Dataset(
         {name: ("time", values) for name, values in found.items()},
@@ -369,22 +393,25 @@ def refined_step(step, bias, allowed, order):
 
 
 def _bias(scene, times, step, paths, seed, threads, scheme):
-    """Bias of the variance of D by the step, and its standard error."""
+    """Bias of the mean and of the variance of D by the step, each with its standard error."""
     chosen = schemes.scheme(scene, scheme)
     order = chosen.weak_order(scene)
     if chosen.coupled:
         change, _ = coupled(scene, times, step, paths, seed, threads, scheme=scheme)
-        return step_bias(change, order)
+        return {"mean": mean_bias(change, order), "variance": step_bias(change, order)}
     # independent runs on a grid and on its halves
     coarse, fine = (
         moments(gram(scene, times, step, 4 * paths, labelled(seed, k), 0, threads, scheme, parts=k))
         for k in (1, 2)
     )
     factor = 1 / (1 - 2**-order)
-    return (
-        factor * (coarse["variance"] - fine["variance"]),
-        factor * np.hypot(coarse["variance_error"], fine["variance_error"]),
-    )
+    return {
+        name: (
+            factor * (coarse[name] - fine[name]),
+            factor * np.hypot(coarse[f"{name}_error"], fine[f"{name}_error"]),
+        )
+        for name in ("mean", "variance")
+    }
 
 
 def _choose_step(scene, times, tol, seed, threads, scheme):
@@ -393,9 +420,38 @@ def _choose_step(scene, times, tol, seed, threads, scheme):
     found = moments(
         gram(scene, times, step, PILOT_PATHS, labelled(seed, "pilot"), 0, threads, scheme)
     )
-    bias, error = _bias(scene, times, step, PILOT_PATHS, labelled(seed, "pilot"), threads, scheme)
+    own = labelled(seed, "pilot")
+    bias, error = _bias(scene, times, step, PILOT_PATHS, own, threads, scheme)["variance"]
     worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
     return refined_step(step, worst, tol, schemes.scheme(scene, scheme).weak_order(scene))
+
+
+_MEASURABLE = 0.2  # largest relative bias of Var D at which halving the step measures it
+
+
+def require_resolved(step, variance, bias, error):
+    """Refuse a step so long that halving it does not measure its bias.
+
+    The bias follows the weak order for steps that are short against every time scale of the
+    scene, on which g varies included; then it is small against the variance.
+
+    Parameters
+    ----------
+    step : float
+    variance, bias, error : float
+        Of D at the last time: its variance, the bias of the step and its standard error.
+
+    Raises
+    ------
+    ToleranceError
+        If the bias is significantly above a fifth of the variance.
+    """
+    if abs(bias) > max(_MEASURABLE * variance, 4 * error):
+        raise ToleranceError(
+            f"step = {step:g} is too long for this scene: halving it puts the bias of the variance "
+            f"of int g at {abs(bias) / variance:.0%}, where it is no measure of it; "
+            "choose a smaller step"
+        )
 
 
 def require_finite(results):

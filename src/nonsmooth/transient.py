@@ -18,6 +18,7 @@ import numpy as np
 import scipy.linalg
 
 from nonsmooth import mesh, refinement
+from nonsmooth.errors import ToleranceError
 from nonsmooth.generator import evaluate
 from nonsmooth.poisson import EVEN, ODD
 
@@ -28,8 +29,9 @@ _COARSE, _FINEST = 2, 9  # levels
 _LARGEST = 45_000  # grid points; each pole keeps its factors in memory
 _MARGIN = 0.15  # of the box, to see whether it matters
 _DEPENDENT = 1e-10  # a function this much smaller without what it shares with others
-_ROUNDING = 1e-11  # relative; against linear scenes it comes to 2e-12
+_ROUNDING = 3e-11  # relative; against linear scenes it comes to 9e-12
 _GROWTH = 1e-12  # relative rate from which on a mode is taken to grow
+_APART = 1.8  # ratio of times at which the oscillation of errors is sampled
 _AROUND = 1.25  # the box holds the starting point with so much to spare
 
 
@@ -50,8 +52,14 @@ def moments(scene, times, tol):
     moments, errors : numpy.ndarray, shape (2, t)
         w and v. The errors are what the last refinement of the grid changes or, if larger, the sum
         of what its variables change each for itself; to it come the box and the projection. They
-        are infinite if no projection is stable, as on grids that are too coarse.
+        oscillate with tau, relative to which each is the largest between tau / 2 and 2 tau.
+
+    Raises
+    ------
+    ToleranceError
+        If no projection is stable.
     """
+    wanted, times = times, _with_neighbours(times)
     scale = np.where(times > 0, times, 1.0)
 
     def solve(grid):
@@ -80,7 +88,25 @@ def moments(scene, times, tol):
     # w is the difference of terms as large as the standard deviation
     w, v = np.abs(last)
     error += _ROUNDING * np.array([w + np.sqrt(v), v + w**2])
-    return last, np.nan_to_num(error, nan=np.inf)
+    if not np.all(np.isfinite(error)):
+        raise ToleranceError(
+            "v(tau) has no stable projection on the grids of this scene; use simulate, or another n"
+        )
+    error /= scale
+    place = np.searchsorted(times, wanted)
+    near = [(times >= tau / 2) & (times <= 2 * tau) for tau in wanted]
+    largest = np.transpose([error[:, here].max(axis=1) for here in near])
+    return last[:, place], largest * scale[place]
+
+
+def _with_neighbours(times):
+    """Sort times and add some between half of the smallest and twice the largest positive one."""
+    positive = times[times > 0]
+    if not len(positive):
+        return np.unique(times)
+    first, last = positive.min() / 2, 2 * positive.max()
+    count = 1 + math.ceil(math.log(last / first) / math.log(_APART))
+    return np.unique(np.concatenate([times, np.geomspace(first, last, count)]))
 
 
 def _first_grid(scene, tol):

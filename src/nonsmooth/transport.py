@@ -13,6 +13,8 @@ import numpy as np
 from nonsmooth.errors import ToleranceError
 from nonsmooth.poisson import EVEN, ODD
 
+_ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
+
 
 @dataclass(frozen=True)
 class Modes:
@@ -56,7 +58,9 @@ def modes(grid, z):
         return _of_all(grid, even, balance)
     odd = grid.resolvent(z, ODD, source)
     squares, odd_parts = _eigen(odd[moving] @ even[moving], balance * np.sqrt(np.abs(g)))
-    rates = 1 / np.sqrt(squares.astype(complex))
+    # at real z, rounding may make the smallest negative: modes that never decay, instead of at once
+    fast = np.abs(squares) < _ROUNDING * np.max(np.abs(squares))
+    rates = 1 / np.sqrt(np.where(fast, np.abs(squares), squares).astype(complex))
     rates = np.where(rates.real < 0, -rates, rates)
     even_parts = rates * (even @ odd_parts)
     even_start = grid.start[EVEN] @ even_parts

@@ -11,8 +11,11 @@ from scipy.special import ndtr, ndtri
 
 from nonsmooth import errata
 from nonsmooth.brownian import brownian_crossing
+from nonsmooth.crossing import crossing_estimate
 from nonsmooth.drift_condition import margins
+from nonsmooth.ergodicity import Bound
 from nonsmooth.errors import CheckError
+from nonsmooth.estimate import Estimate
 from nonsmooth.scene import Scene
 
 TAU = np.array([0.1, 1.0, 10.0])
@@ -22,6 +25,8 @@ evaluate = runpy.run_path(str(SCRIPTS / "errata" / "errata.py"))["evaluate"]
 search = runpy.run_path(str(SCRIPTS / "theorems" / "drift_condition.py"))["search"]
 compare = runpy.run_path(str(SCRIPTS / "crossing" / "check.py"))["compare"]
 distances = runpy.run_path(str(SCRIPTS / "limit_theorem" / "check.py"))["distances"]
+ergodicity = runpy.run_path(str(SCRIPTS / "theorems" / "ergodicity.py"))["measure"]
+containment = runpy.run_path(str(SCRIPTS / "finite_p" / "check.py"))["containment"]
 deformation = runpy.run_path(str(SCRIPTS / "plasticity" / "check.py"))["compare"]
 
 
@@ -127,6 +132,27 @@ def test_a_violated_bound_fails(monkeypatch):
             assert search(*case, points=300, reach=10.0).sizes["case"] == 3
 
 
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({}, None),
+        ({"decay_rate": Estimate(2.4, 0.05, "", 0.0)}, r"rate 2.4 \+- 0.05, but"),
+        ({"decay_rate": Estimate(np.nan, 0.05, "", 0.0)}, "one of the two is wrong"),
+        ({"poisson_bound": Bound(0.1, 0.01, 0.095)}, "larger enlargement"),
+    ],
+)
+def test_a_contradicted_theorem_fails(monkeypatch, changes, message):
+    """A rate that is not the spectral gap's; a bound that is attained where the box ends."""
+    scenes = {"friction": {"model": "friction"}}
+    for name, result in changes.items():
+        monkeypatch.setitem(ergodicity.__globals__, name, lambda *_, result=result: result)
+    if message is None:
+        assert ergodicity(scenes, 1e-3, 0.1, 2.0).sizes["scene"] == 1
+    else:
+        with pytest.raises(CheckError, match=message):
+            ergodicity(scenes, 1e-3, 0.1, 2.0)
+
+
 P = np.array([10.0, 100.0, 1000.0])
 
 
@@ -198,3 +224,48 @@ def test_a_large_bias_of_the_deformation_fails():
     """Significantly above the standard error."""
     with pytest.raises(CheckError, match="bias at the limit 1"):
         deformation(*exceedances(bias=2e-2))
+
+
+def bands(shift=0.0, bias=0.0, paths=10_000):
+    """Artifacts of figure 2b: expected counts in the place of random ones, shifted by `shift`.
+
+    The shift and the bias are in units of dW/dlog T, those of a relative change of all times.
+    """
+    horizon = np.linspace(0.5, 10, 20)
+    truth = brownian_crossing(1.6, horizon)
+    slope = horizon * np.gradient(truth, horizon)
+    counts = np.round(paths * (truth + shift * slope))
+    estimate = crossing_estimate(counts, paths)
+    scalars = {"slope": slope.max(), "bias": bias * slope.max(), "bias_error": 0.0, "paths": paths}
+    values = {name: ("horizon", value) for name, value in estimate.items()} | scalars
+    runs = [xr.Dataset(values, coords={"horizon": horizon, "p": p}) for p in (10.0, 1.0)]
+    curves = [
+        xr.Dataset({"probability": ("horizon", truth[2:])}, coords={"horizon": horizon[2:], "p": p})
+        for p in (1.0, 10.0)
+    ]
+    return runs, curves, 1
+
+
+def test_bands_around_the_curves_pass():
+    """All contain them; what chance allows is below 95 %, of which the expectation is close."""
+    result = containment(*bands())
+    assert list(result["p"]) == [1.0, 10.0]
+    assert float(result["share"]) == 1
+    # the mean of 10 000 replicates: six of its standard deviations, and the steps of the counts
+    allowed = 6 * float(result["spread"]) / 100 + 0.01
+    assert abs(float(result["expected"]) - 0.95) < allowed
+    assert float(result["least"]) < 0.95
+
+
+def test_a_known_bias_is_allowed_for():
+    """A shift that would be refused passes if halving the step has found it."""
+    assert float(containment(*bands(shift=0.025, bias=0.025))["share"]) < 0.5
+
+
+@pytest.mark.parametrize(
+    ("shift", "message"), [(0.1, "simultaneous band"), (0.025, "95 % bands contain")]
+)
+def test_bands_beside_the_curves_fail(shift, message):
+    """By ten standard errors, and by two and a half, which few pointwise bands contain."""
+    with pytest.raises(CheckError, match=message):
+        containment(*bands(shift=shift))

@@ -51,7 +51,10 @@ def test_the_threshold_reruns_the_crossings_only(finished):
         "crossing_asymptotic",
     }
     rest = {name for name in jobs if not name.startswith("crossing")}
-    assert rest == {"check_crossing", "figure_2b", "table_time_step", "values", "paper"}
+    assert rest == {
+        *("check_crossing", "figure_2b", "table_time_step", "values", "paper"),
+        *("finite_p_exact", "check_finite_p", "finite_p_formulas", "figure_10", "table_9"),
+    }
 
 
 def test_more_paths_run_new_shards_only(finished):
@@ -106,6 +109,7 @@ def test_named_targets(repository):
     """Each exists."""
     names = [
         *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5", "6", "8", "9")),
+        *("figure_10", "table_9"),
         *(f"table_{k}" for k in range(1, 5)),
         *("table_5", "table_potentials", "table_6", "table_7", "table_errata"),
         *("figures", "tables", "paper"),

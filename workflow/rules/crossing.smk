@@ -155,33 +155,6 @@ rule check_crossing:
         "../scripts/crossing/check.py"
 
 
-rule figure_2b:
-    input:
-        monte_carlo=expand(
-            "{results}/crossing/p={p}.nc", results=RESULTS, p=map(label, config["crossing"]["p"])
-        ),
-        asymptotic=rules.crossing_asymptotic.output[0],
-        check=rules.check_crossing.output[0],
-        modules=sources("workflow/scripts/crossing/figure_2b.py"),
-    output:
-        report(
-            multiext(f"{RESULTS}/figures/figure_2b", ".pdf", ".png"),
-            caption="../report/figure_2b.rst",
-            category="Figures",
-        ),
-    log:
-        f"{RESULTS}/logs/figures/figure_2b.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/figure_2b.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
-    message:
-        "Draw figure 2b"
-    script:
-        "../scripts/crossing/figure_2b.py"
-
-
 rule table_time_step:
     input:
         check=rules.check_crossing.output[0],

@@ -2,11 +2,11 @@
 
 FIGURES = [
     *["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"],
-    *["figure_7", "figure_8", "figure_9"],
+    *["figure_7", "figure_8", "figure_9", "figure_10", "figure_12"],
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *["table_errata", "table_potentials", "table_time_step"],
+    *["table_7b", "table_9", "table_10", "table_errata", "table_potentials", "table_time_step"],
 ]
 
 
@@ -33,13 +33,17 @@ rule values:
         monte_carlo=rules.variance_monte_carlo.output[0],
         agreement=rules.check_variance.output[0],
         crossing=rules.check_crossing.output[0],
+        contained=rules.check_finite_p.output[0],
+        formulas=rules.finite_p_formulas.output[0],
         limit=rules.sweep_limit.output[0],
         convergence=rules.table_4.input.spectral,
         drift_condition=rules.drift_condition.output[0],
+        ergodicity=rules.ergodicity.output[0],
         errata=rules.errata.output[0],
         theorem=rules.check_limit_theorem.output[0],
         deformation=rules.check_plasticity.output[0],
         deformation_variance=rules.plasticity_variance.output[0],
+        rates=rules.measure_rates.output[0],
         modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
     output:
         ensure(f"{RESULTS}/paper/values.json", non_empty=True),
@@ -53,6 +57,7 @@ rule values:
     params:
         variance=lookup(dpath="variance", within=config),
         sweep=lookup(dpath="crossing", within=config),
+        finite_p=lookup(dpath="finite_p", within=config),
         horizon=lookup(dpath="convergence/horizon", within=config),
         scheme=lookup(dpath="convergence/finite_difference", within=config),
         trajectories=lookup(dpath="trajectories", within=config),
@@ -61,6 +66,7 @@ rule values:
         density=lookup(dpath="density", within=config),
         limit_theorem=lookup(dpath="limit_theorem", within=config),
         plasticity=lookup(dpath="plasticity", within=config),
+        limits=lookup(dpath="rates", within=config),
         seed=lookup(dpath="seed", within=config),
     message:
         "Collect the numbers that the text quotes"
@@ -74,6 +80,7 @@ rule paper:
         tables=rules.tables.input,
         values=rules.values.output[0],
         template="paper/paper.typ",
+        recorded=["docs/speed_pde.pdf", "docs/speed_crossing.pdf"],
         modules=sources("workflow/scripts/paper/typeset.py"),
     output:
         report(ensure(PAPER, non_empty=True), caption="../report/paper.rst", category="Paper"),

@@ -17,7 +17,7 @@ from functools import lru_cache
 from types import ModuleType
 
 from nonsmooth.errors import SceneError
-from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, strang
+from nonsmooth.schemes import drift_implicit, dry_friction, euler_maruyama, lie, strang
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,8 @@ SCHEMES = {
     "strang": Scheme(strang, 2.0, 1.5, longest_step=strang.longest_step),
     "dry_friction": Scheme(dry_friction, 2.0, 2.0, handles=dry_friction.handles, coupled=False),
     "drift_implicit": Scheme(drift_implicit, 1.0, 1.0, handles=drift_implicit.handles),
+    # the smooth part is exact but for int g
+    "lie": Scheme(lie, 2.0, 1.0, handles=drift_implicit.handles),
     "euler_maruyama": Scheme(
         euler_maruyama,
         1.0,

@@ -1,45 +1,55 @@
-"""Figure 2b: threshold crossing probabilities for growing p and their limit."""
+"""Figure 2b: threshold crossing probabilities for growing p, exact and sampled."""
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.plotting import LOOKS, ORANGE, TEXT_WIDTH, draw
+from nonsmooth.plotting import BLACK, LOOKS, ORANGE, TEXT_WIDTH, draw
 from nonsmooth.tables import sorted_by
 
 
-def crossing(monte_carlo, asymptotic, check):
-    """Draw W(sqrt(p) b, p T) and W_star(b / gamma, T) above their differences, with 95 % bands.
+def crossing(monte_carlo, exact, asymptotic, check, contained):
+    """Draw W(sqrt(p) b, p T) and W_star(b / gamma, T), their differences, and the 95 % bands.
+
+    Lines are exact, the bands those of Monte Carlo; below, the bands less the exact curves. The
+    artifacts of the checks are not drawn: without them there is no figure.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    figure, (top, bottom) = plt.subplots(
-        2, 1, figsize=(0.75 * TEXT_WIDTH, 4.4), sharex=True, height_ratios=[2, 1]
+    figure, (top, middle, bottom) = plt.subplots(
+        3, 1, figsize=(0.75 * TEXT_WIDTH, 5.2), sharex=True, height_ratios=[2.2, 1, 1]
     )
     limit = _from_zero(asymptotic["probability"])
-    for k, run in enumerate(sorted_by("p", monte_carlo)):
+    runs = zip(sorted_by("p", monte_carlo), sorted_by("p", exact), strict=True)
+    for k, (run, curve) in enumerate(runs):
         color, dashes = LOOKS[k % len(LOOKS)]
         horizon = _from_zero(run["horizon"])
-        probability, lower, upper = (
-            _from_zero(run[name]) for name in ("probability", "lower", "upper")
-        )
-        for axis, shift in ((top, 0.0), (bottom, limit)):
+        lower, upper = _from_zero(run["lower"]), _from_zero(run["upper"])
+        solved, probability = curve["horizon"].values, curve["probability"].values
+        late = slice(-len(solved), None)  # the exact curves begin later
+        for axis, shift in ((top, np.zeros_like(limit)), (middle, limit)):
             axis.fill_between(
                 horizon, lower - shift, upper - shift, color=color, alpha=0.3, linewidth=0
             )
             axis.plot(
-                horizon,
-                probability - shift,
+                solved,
+                probability - shift[late],
                 color=color,
                 linestyle=dashes,
                 label=f"$p = {float(run['p']):g}$",
             )
+        bounds = lower[late] - probability, upper[late] - probability
+        bottom.fill_between(solved, *bounds, color=color, alpha=0.15, linewidth=0)
+        for bound in bounds:
+            bottom.plot(solved, bound, color=color, linestyle=dashes, linewidth=0.7)
     top.plot(horizon, limit, color=ORANGE, label=r"$W_\star(b/\gamma, T)$", zorder=1)
-    bottom.axhline(0, color=ORANGE, zorder=1)
+    middle.axhline(0, color=ORANGE, zorder=1)
+    bottom.axhline(0, color=BLACK, linewidth=0.6)
     top.set(ylabel=r"$W(\sqrt{p}\,b,\, pT)$", ylim=(0, 1))
     top.legend(loc="lower right")
-    bottom.set(xlabel="$T$", ylabel=r"$W - W_\star$", xlim=(0, horizon[-1]))
+    middle.set(ylabel=r"$W - W_\star$")
+    bottom.set(xlabel="$T$", ylabel="bands $- W$", xlim=(0, horizon[-1]))
     return figure
 
 

@@ -23,15 +23,20 @@ def values(
     monte_carlo,
     agreement,
     crossing,
+    contained,
+    formulas,
     limit,
     convergence,
     drift_condition,
+    ergodicity,
     errata,
     theorem,
     deformation,
     deformation_variance,
+    rates,
     variance,
     sweep,
+    finite_p,
     horizon,
     scheme,
     trajectories,
@@ -40,6 +45,7 @@ def values(
     density,
     limit_theorem,
     plasticity,
+    limits,
     seed,
 ):
     """Collect numbers from the artifacts and the configuration.
@@ -48,15 +54,21 @@ def values(
     ----------
     spectral, monte_carlo, agreement, crossing, limit, theorem : xarray.Dataset
         The artifacts.
+    contained, formulas : xarray.Dataset
+        Figure 2b's bands against exact curves; the corrected formulas.
     deformation, deformation_variance : xarray.Dataset
         The formula for the permanent deformation against Monte Carlo, and its gamma^2.
+    rates : xarray.Dataset
+        Table 10.
     convergence : list of xarray.Dataset
         Spectral solutions of table 4, one per n.
-    drift_condition, errata : xarray.Dataset
-        Table 7 and the table of errata.
-    variance, sweep, trajectories, scenes, theorems, density, limit_theorem, plasticity : dict
-        Sections of the configuration: figure 2a, figure 2b, trajectories, every scene, table 7,
-        figure 8, figure 9.
+    drift_condition, ergodicity, errata : xarray.Dataset
+        Tables 7 and 7b, and the table of errata.
+    variance, sweep, finite_p, trajectories, scenes : dict
+        Sections of the configuration: figure 2a, figure 2b, the corrected formulas, trajectories,
+        every scene.
+    theorems, density, limit_theorem, plasticity, limits : dict
+        Sections, too: table 7, figure 7, figure 8, figure 9, figure 12.
     horizon, scheme
         Horizon and finite differences of table 4.
     seed : int
@@ -105,6 +117,7 @@ def values(
             "standard_error": f"{float(largest['standard_error']):.4f}",
             "ratio": f"{float(largest['distance'] / largest['standard_error']):.0f}",
         },
+        "finite_p": _finite_p(contained, formulas, finite_p),
         "convergence": {
             "horizon": f"{horizon:g}",
             "growth_error": _scientific(max(r["growth_error"] for r in convergence), bound=True),
@@ -130,6 +143,7 @@ def values(
             "tolerances": [_scientific(tolerance) for tolerance in density["tolerances"]],
         },
         "limit_theorem": _limit_theorem(theorem, limit_theorem),
+        "rates": _rates(rates, limits),
         "plasticity": _plasticity(deformation, deformation_variance, plasticity),
         "trajectories": {
             "step": f"{trajectories['step']:g}",
@@ -153,6 +167,7 @@ def values(
             "printed": f"{-float(drift_condition['forcing_printed'].min()):.2f}",
             "rounding": _scientific(drift_condition["drift_error"].max(), bound=True),
         },
+        "ergodicity": _ergodicity(ergodicity, theorems["ergodicity"], scenes["scenes"]),
         "errata": {
             "rows": str(errata.sizes["entry"]),
             "entries": str(len({str(entry).strip("abcd") for entry in errata["entry"].values})),
@@ -163,6 +178,63 @@ def values(
 
 def _formula(text, variable):
     return tylax.latex_to_typst(latex(parse(text, (variable,))))
+
+
+def _ergodicity(found, section, scenes):
+    """How well rates agree, and the scenes in which infinity is slower than the spectral gap."""
+    deviation = np.abs(found["rate"] - found["gap"]) / (found["rate_error"] + found["gap_error"])
+    slower = found["far"] + found["far_error"] < found["gap"] - found["gap_error"]
+    return {
+        "step": f"{section['step']:g}",
+        "enlargement": f"{section['enlargement']:g}",
+        "deviation": f"{float(deviation.max()):.2f}",
+        "slower": [
+            {
+                "model": scenes[name]["scene"]["model"].replace("_", "-"),
+                "noise": scenes[name]["scene"]["noise"],
+                "far": f"{float(found['far'].sel(scene=name)):.2f}",
+                "gap": f"{float(found['gap'].sel(scene=name)):.2f}",
+            }
+            for name in found["scene"].values[slower.values]
+        ],
+    }
+
+
+def _finite_p(contained, formulas, section):
+    """Constants and errors of the corrected formulas, and how often bands contain exact curves."""
+    constants = ("diffusion", "length", "dispersion", "corner", "start")
+    p, distance = formulas["p"].values, formulas["distance"]
+    first, second = (distance.sel(formula=name).values for name in ("order 1", "order 2"))
+    resolved = formulas["resolved"].sel(formula="order 2").values.astype(bool)
+    better = p[p > max(p[resolved & (second >= first)], default=0.0)]
+    return {name: f"{float(formulas[name]):.8f}" for name in constants} | {
+        "constants_error": _scientific(
+            max(float(formulas[f"{name}_error"]) for name in constants), bound=True
+        ),
+        "horizons": ", ".join(f"{T:g}" for T in section["horizons"]),
+        "tabulated": f"{section['tabulated']:g}",
+        "tolerance": _scientific(section["tolerance"]),
+        "first_time": f"{section['first_time']:g}",
+        "fit_from": f"{section['fit_from']:g}",
+        "slopes": [f"{slope:.2f}" for slope in formulas["slope"].values],
+        "errors": [
+            {"p": f"{scale:g}"}
+            | {
+                str(name): _scientific(distance.sel(formula=name)[k])
+                for name in distance["formula"].values
+            }
+            for k, scale in enumerate(p)
+            if resolved[k]
+        ],
+        "order_2_better": f"{better[0]:g}" if better.size else "oo",
+        "share": f"{100 * float(contained['share']):.1f}",
+        "expected": f"{100 * float(contained['expected']):.1f}",
+        "spread": f"{100 * float(contained['spread']):.1f}",
+        "least": f"{100 * float(contained['least']):.1f}",
+        "rarely": _scientific(contained["rarely"]),
+        "outside": _scientific(contained["outside"]),
+        "standard_errors": f"{float(contained['standard_errors'].max()):.1f}",
+    }
 
 
 def _limit_theorem(theorem, section):
@@ -183,6 +255,26 @@ def _limit_theorem(theorem, section):
         "maximum_largest": f"{float(last['maximum'].max()):.3f}",
         "exponent_smallest": f"{exponents.max():.2f}",
         "exponent_largest": f"{exponents.min():.2f}",
+    }
+
+
+def _rates(rates, section):
+    """Exponents of n with their errors, by scene."""
+    return {
+        "paths": f"{section['paths']:,}",
+        "horizon": f"{section['horizon']:g}",
+        "weak_paths": f"{section['weak']['paths']:,}",
+        "weak_horizon": f"{section['weak']['horizon']:g}",
+        "exponents": {
+            str(name): {
+                kind: " plus.minus ".join(
+                    f"{float(rates[f'{kind}_exponent{suffix}'].sel(scene=name)):.2f}"
+                    for suffix in ("", "_error")
+                )
+                for kind in ("pathwise", "weak")
+            }
+            for name in rates["scene"].values
+        },
     }
 
 

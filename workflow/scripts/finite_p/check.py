@@ -1,0 +1,101 @@
+"""Check that the Monte Carlo bands of figure 2b contain the exact curves as often as stated."""
+
+import numpy as np
+from scipy.special import ndtri
+
+from nonsmooth import artifact
+from nonsmooth.crossing import proportion
+from nonsmooth.errors import CheckError
+from nonsmooth.jobs import produce
+from nonsmooth.tables import sorted_by
+
+OUTSIDE = 1e-6  # probability that a simultaneous band misses its curve by chance
+RARELY = 1e-3  # probability that the 95 % bands contain the curves too rarely by chance
+REPLICATES = 10_000  # ensembles that the second is taken from
+
+
+def containment(monte_carlo, exact, seed):
+    """Compare the bands with exact probabilities, twice.
+
+    Simultaneous bands must contain the curves at every p and T. Pointwise 95 % bands contain an
+    exact probability in 95 % of all ensembles, but all T share their paths, so that the share of
+    p and T at which they contain the curves fluctuates widely from ensemble to ensemble: what it
+    may be follows from ensembles of the same size, drawn from the exact curves. In both, the bias
+    of the time step, as measured by halving it, is allowed for.
+
+    Parameters
+    ----------
+    monte_carlo, exact : list of xarray.Dataset
+        One per p; the same number of paths for all.
+    seed : int
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    CheckError
+        If a simultaneous band misses its curve, or the 95 % bands contain them too rarely.
+    """
+    monte_carlo, exact = sorted_by("p", monte_carlo), sorted_by("p", exact)
+    p = np.array([float(curve["p"]) for curve in exact])
+    points = sum(curve.sizes["horizon"] for curve in exact)
+    z = -ndtri(OUTSIDE / 2 / points)
+    paths = int(monte_carlo[0]["paths"])
+    _, lowest, highest = proportion(np.arange(paths + 1), paths)
+    contained, distance, standard_errors, replicates = [], [], [], []
+    for run, curve in zip(monte_carlo, exact, strict=True):
+        run = run.sel(horizon=curve["horizon"], method="nearest", tolerance=1e-9)
+        horizon, truth = curve["horizon"].values, curve["probability"].values
+        probability = run["probability"].values
+        # a relative shift s of the first-passage times changes W by -s dW/dlog T
+        slope = horizon * np.gradient(truth, horizon) / float(run["slope"])
+        bias = float(run["bias"]) * slope
+        _, lower, upper = proportion(np.round(probability * paths), paths, 1 - OUTSIDE / points)
+        allowance = np.abs(bias) + z * float(run["bias_error"]) * np.abs(slope)
+        missed = (truth < lower - allowance) | (truth > upper + allowance)
+        if np.any(missed):
+            raise CheckError(
+                f"figure 2b: the spectral curve at p = {p[len(contained)]:g} is outside the "
+                f"simultaneous band of Monte Carlo from T = {horizon[missed][0]:g} on; "
+                "look for a mistake in either"
+            )
+        contained.append(
+            float(np.mean((run["lower"].values <= truth) & (truth <= run["upper"].values)))
+        )
+        distance.append(np.abs(probability - truth).max())
+        standard_errors.append(np.max(np.abs(probability - truth) / run["probability_error"]))
+        sampled = np.maximum.accumulate(np.clip(truth + bias, 0.0, 1.0))
+        random = np.random.default_rng([seed, len(replicates)])
+        cells = np.diff(sampled, prepend=0.0, append=1.0)
+        counts = random.multinomial(paths, cells, size=REPLICATES)[:, :-1].cumsum(axis=1)
+        inside = (lowest[counts] <= truth) & (truth <= highest[counts])
+        replicates.append(inside.mean(axis=1))
+    share, shares = np.mean(contained), np.mean(replicates, axis=0)
+    least = np.quantile(shares, RARELY)
+    if share < least:
+        raise CheckError(
+            f"figure 2b: the 95 % bands contain the spectral curves at {share:.1%} of all p and "
+            f"T, chance allows {least:.1%}; look for a mistake in the bands or a biased time step"
+        )
+    return artifact.dataset(
+        "Exact crossing probabilities and the bands of Monte Carlo",
+        "for each p over all T; the bands of the share are pointwise, of 95 %",
+        {"p": ("p", p, "scale p")},
+        {
+            "contained": ("p", contained, "share of T at which the band contains the curve"),
+            "distance": ("p", distance, "largest difference"),
+            "standard_errors": ("p", standard_errors, "largest difference in standard errors"),
+            "share": ((), share, "share of all p and T"),
+            "expected": ((), shares.mean(), "its expectation, with the bias of the time step"),
+            "spread": ((), shares.std(), "its standard deviation"),
+            "least": ((), least, "smallest share that is allowed"),
+            "rarely": ((), RARELY, "probability of a smaller share by chance"),
+            "outside": ((), OUTSIDE, "probability that a simultaneous band misses by chance"),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(containment, snakemake)

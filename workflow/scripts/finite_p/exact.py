@@ -1,0 +1,42 @@
+"""Figure 2b without Monte Carlo: W(sqrt(p) b, p T) by the spectral method."""
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.crossing import crossing_probability
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+
+
+def exact(scene, threshold, horizon, outputs, first_time, tolerance, p):
+    """Solve for the crossing probability at the horizons of Monte Carlo from `first_time` on.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    scene = Scene(**scene)
+    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    horizons = horizons[horizons >= first_time * (1 - 1e-9)]
+    solution = crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tolerance)
+    return artifact.dataset(
+        "Threshold crossing probability by the spectral method",
+        f"{scene}, b = {threshold}, p = {p}",
+        {"horizon": ("horizon", horizons, "T"), "p": ((), p, "scale p")},
+        {
+            "probability": (
+                "horizon",
+                solution["probability"].values,
+                "probability of crossing sqrt(p) b by p T",
+            ),
+            "probability_error": (
+                "horizon",
+                solution["probability_error"].values,
+                "difference of two resolutions",
+            ),
+        },
+    )
+
+
+if __name__ == "__main__":
+    produce(exact, snakemake)

@@ -1,0 +1,109 @@
+"""The asymptotic formula and its corrections against the exact probability, for growing p."""
+
+from dataclasses import asdict
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.crossing import crossing_probability
+from nonsmooth.errors import CheckError
+from nonsmooth.jobs import produce
+from nonsmooth.milne import expansion
+from nonsmooth.scene import Scene
+
+EXACT = {"method": "spectral"}
+FORMULAS = {
+    "plain": {"method": "asymptotic"},
+    "order 1": {"method": "corrected", "order": 1},
+    "order 2": {"method": "corrected", "order": 2},
+}
+CONSTANTS = {
+    "diffusion": "D = gamma^2 / 2",
+    "length": "extrapolation length kappa",
+    "dispersion": "dispersion B",
+    "corner": "dipole S of the corner between initial time and threshold",
+    "poisson": "Poisson solution u at the start",
+    "start": "h at the start",
+}
+RESOLVED = 10  # a distance is resolved where it is as many times its own error
+
+
+def formulas(scene, threshold, horizons, p, fit_from):
+    """Evaluate every formula at every p, and fit powers of p to their errors.
+
+    Parameters
+    ----------
+    scene : dict
+    threshold : float
+    horizons, p : list of float
+        Increasing.
+    fit_from : float
+        Smallest p of the fit.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the formula, p and T; the largest distances over T and their powers of p; and the
+        constants of the formulas.
+
+    Raises
+    ------
+    CheckError
+        If fewer than two distances can be fitted.
+    """
+    scene, p = Scene(**scene), np.array(p, dtype=float)
+
+    def evaluate(options):
+        found = [crossing_probability(scene, threshold, horizons, s, **options) for s in p]
+        return np.array([[d["probability"], d["probability_error"]] for d in found]).swapaxes(0, 1)
+
+    exact, exact_error = evaluate(EXACT)
+    value, error = np.array([evaluate(options) for options in FORMULAS.values()]).swapaxes(0, 1)
+    distance = np.abs(value - exact).max(axis=-1)
+    distance_error = (error + exact_error).max(axis=-1)
+    resolved = distance > RESOLVED * distance_error
+    slopes, deviations = [], []
+    for name, row, known in zip(FORMULAS, distance, resolved, strict=True):
+        used = (p >= fit_from) & known
+        if used.sum() < 2:
+            raise CheckError(
+                f"finite_p: the error of the formula {name!r} is resolved at fewer than two "
+                f"p >= {fit_from:g}; lower finite_p.fit_from or add values to finite_p.p"
+            )
+        scale, size = np.log(p[used]), np.log(row[used])
+        slopes.append(np.polyfit(scale, size, 1)[0])
+        deviations.append(np.abs(np.diff(size) / np.diff(scale) - slopes[-1]).max())
+    every = ("formula", "p", "horizon")
+    variables = {
+        "probability": (every, value, "probability by the formula"),
+        "probability_error": (every, error, "error inherited from its constants"),
+        "exact": (every[1:], exact, "probability by the spectral method"),
+        "exact_error": (every[1:], exact_error, "difference of two resolutions"),
+        "distance": (every[:2], distance, "largest error of the formula over T"),
+        "distance_error": (every[:2], distance_error, "largest error of both methods over T"),
+        "resolved": (
+            every[:2],
+            resolved.astype(np.int8),
+            f"1 where the distance is {RESOLVED} times its error",
+        ),
+        "slope": ("formula", slopes, "power of p that fits the distance"),
+        "slope_error": ("formula", deviations, "largest deviation of a slope between neighbours"),
+    }
+    constants, errors = map(asdict, expansion(scene))
+    for name, text in CONSTANTS.items():
+        variables[name] = ((), constants[name], text)
+        variables[f"{name}_error"] = ((), errors[name], "difference of two polynomial degrees")
+    return artifact.dataset(
+        "Corrected asymptotic formulas",
+        f"crossing probabilities of {scene}, b = {threshold}",
+        {
+            "formula": ("formula", list(FORMULAS), "formula"),
+            "p": ("p", p, "scale p"),
+            "horizon": ("horizon", np.array(horizons, dtype=float), "T"),
+        },
+        variables,
+    )
+
+
+if __name__ == "__main__":
+    produce(formulas, snakemake)

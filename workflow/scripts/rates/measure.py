@@ -1,0 +1,112 @@
+"""Distances of penalized scenes to their non-smooth limits, and the exponents of n."""
+
+from functools import partial
+
+import numpy as np
+
+from nonsmooth import artifact
+from nonsmooth.jobs import produce
+from nonsmooth.rates import (
+    contact_time,
+    growth_difference,
+    largest_distances,
+    slope,
+    variance_difference,
+)
+from nonsmooth.scene import Scene
+from nonsmooth.spectral import applies
+
+KINDS = {
+    "pathwise": "mean of the largest distance up to T, on the same Brownian path",
+    "weak": "difference of Var D(T)/T, or of gamma^2 where that is in closed form",
+}
+
+
+def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
+    """Measure every scene with a step and with twice the step.
+
+    The ensembles of different n are independent, so that the points of a fit are.
+
+    Parameters
+    ----------
+    scenes : dict
+        Name -> scene, the variable compared, the list of n.
+    horizon : float
+        T of the paths.
+    resolution, longest : float
+        The step, in units of the penalty's time scale, and at most.
+    paths : int
+    weak : dict
+        Horizon, step and paths of the variances.
+    seed, threads : int
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (scene, point).
+    """
+    found = {kind: ([], [], [], []) for kind in KINDS}
+    for name, entry in scenes.items():
+        n = np.array(entry["n"], dtype=float)
+        chain = [Scene(**entry["scene"], n=k) for k in n]
+
+        def distances(factor, chain=chain, entry=entry, name=name):
+            samples = [
+                largest_distances(
+                    one,
+                    entry["variable"],
+                    horizon,
+                    factor * min(longest, resolution * contact_time(one)),
+                    paths,
+                    (seed, "rates", name, one.n),
+                    threads,
+                )
+                for one in chain
+            ]
+            return np.array([[s.mean(), s.std(ddof=1) / np.sqrt(paths)] for s in samples]).T
+
+        def differences(factor, chain=chain, name=name):
+            if applies(chain[0]):
+                return np.array([growth_difference(one) for one in chain]).T
+            own = [(seed, "weak rates", name, one.n) for one in chain]
+            return np.array(
+                [
+                    variance_difference(
+                        one, weak["horizon"], factor * weak["step"], weak["paths"], s, threads
+                    )
+                    for one, s in zip(chain, own, strict=True)
+                ]
+            ).T
+
+        for kind, run in (("pathwise", distances), ("weak", differences)):
+            (value, error), (coarse, coarse_error) = run(1.0), run(2.0)
+            exponent, half_width = slope(n, value, error)
+            other, _ = slope(n, coarse, coarse_error)
+            fit = [exponent, half_width + abs(other - exponent)]
+            for kept, new in zip(found[kind], (value, error, coarse, fit), strict=True):
+                kept.append(new)
+    over = ("scene", "point")
+    variables = {"n": (over, [entry["n"] for entry in scenes.values()], "penalization")}
+    for kind, text in KINDS.items():
+        value, error, coarse, fit = (np.array(item) for item in found[kind])
+        variables |= {
+            kind: (over, value, text),
+            f"{kind}_error": (over, error, "its standard error, or error bound"),
+            f"{kind}_coarse": (over, coarse, "the same with twice the step"),
+            f"{kind}_exponent": ("scene", fit[:, 0], f"exponent of n, {kind}"),
+            f"{kind}_exponent_error": (
+                "scene",
+                fit[:, 1],
+                "half a 95 % interval, and what twice the step changes",
+            ),
+        }
+    return artifact.dataset(
+        "Distances to the non-smooth limit",
+        f"{paths} paths up to {horizon:g}; {weak['paths']} paths up to {weak['horizon']:g}",
+        {"scene": ("scene", list(scenes), "name of the scene")},
+        variables,
+    )
+
+
+if __name__ == "__main__":
+    produce(partial(measure, threads=snakemake.threads), snakemake)

@@ -1,0 +1,146 @@
+"""How the time grows with samples, horizon, p, n, state variables and cores."""
+
+import os
+
+import numpy as np
+
+from nonsmooth import finite_difference, spectral
+from nonsmooth.crossing import crossing_probability, first_passage_counts
+from nonsmooth.jobs import produce
+from nonsmooth.scene import Scene
+from nonsmooth.trajectories import gram
+from nonsmooth.variance import asymptotic_variance
+from nonsmooth.work_precision import Case, measured, timed, unseeded
+
+SIMULATED, SOLVED = "Monte Carlo, Strang", "spectral"
+
+
+def cost(paths, horizons, p, n, names, scenes, step, least, tolerance, paper_scheme, rounds):
+    """Time one thing at a time; what is not varied stays at the first of its values.
+
+    Parameters
+    ----------
+    paths : list of int
+    horizons, p, n : list of float
+    names : list of str
+        Scenes of the sweep, by growing number of state variables.
+    scenes : dict
+        Name -> the scene's parameters and its threshold.
+    step : float
+        Of Monte Carlo.
+    least : int
+        Paths where their number is not varied.
+    tolerance : float
+        Relative, of gamma^2 in every number of variables.
+    paper_scheme : dict
+        `half_width`, `nodes` and `time_step` of the paper's scheme.
+    rounds : int
+
+    Returns
+    -------
+    xarray.Dataset
+        `size` is what is varied.
+    """
+    scene = Scene("friction", n=n[0])
+    cases = []
+
+    def add(panel, method, size, function, *arguments, **options):
+        cases.append(Case(panel, method, size, timed(function, *arguments, **options)))
+
+    for count in paths:
+        add("samples", SIMULATED, count, _simulated, scene, horizons[0], step, count)
+        add(
+            "samples",
+            "with control variate",
+            count,
+            _simulated,
+            scene,
+            horizons[0],
+            step,
+            count,
+            control=True,
+        )
+    for horizon in horizons:
+        add("horizon", SIMULATED, horizon, _simulated, scene, horizon, step, least)
+        add("horizon", SOLVED, horizon, unseeded(_expanded), scene, horizon)
+        add("horizon", "paper's scheme", horizon, unseeded(_marched), scene, horizon, paper_scheme)
+    for scale in p:
+        add("$p$", SIMULATED, scale, _counted, scene, scale, step, least)
+        add("$p$", SOLVED, scale, unseeded(_inverted), scene, scale)
+    for penalization in n:
+        stiff = scene.with_n(penalization)
+        add("$n$", SIMULATED, penalization, _simulated, stiff, horizons[0], step, least)
+        add(
+            "$n$",
+            "Euler-Maruyama, step $1/n$",
+            penalization,
+            _simulated,
+            stiff,
+            horizons[0],
+            1 / penalization,
+            least,
+            scheme="euler_maruyama",
+        )
+        add("$n$", SOLVED, penalization, unseeded(_expanded), stiff, horizons[0])
+    for name in names:
+        own = Scene(**scenes[name]["scene"])
+        size = len(own.state)
+        add("state variables", SIMULATED, size, _simulated, own, horizons[0], step, least)
+        add(
+            "state variables",
+            f"$\\gamma^2$ to {tolerance:g}",
+            size,
+            unseeded(_rate),
+            own,
+            tolerance,
+        )
+    for threads in range(1, os.cpu_count() + 1):
+        add(
+            "cores",
+            SIMULATED,
+            threads,
+            _simulated,
+            scene,
+            horizons[0],
+            step,
+            paths[-1],
+            threads=threads,
+        )
+    return measured(
+        "Growth of the time",
+        f"on one core but in the last panel; Monte Carlo with the step {step:g}",
+        cases,
+        rounds,
+    )
+
+
+def _simulated(scene, horizon, step, paths, seed, scheme="strang", control=False, threads=1):
+    sums = gram(
+        scene, [horizon], step, paths, seed, threads=threads, scheme=scheme, control=control
+    )
+    return sums[0, 2, 2]
+
+
+def _expanded(scene, horizon):
+    return spectral.moments(scene, np.array([horizon]), 12)[1][0]
+
+
+def _marched(scene, horizon, size):
+    return finite_difference.moments(scene, [horizon], **size)[1][0]
+
+
+def _counted(scene, p, step, paths, seed):
+    # out of reach: every path is followed to the end
+    return first_passage_counts(scene, 1e6, [2.0], p, step, paths, seed, threads=1)[0]
+
+
+def _inverted(scene, p):
+    return crossing_probability(scene, 0.6, [2.0], p, method="spectral")["probability"][0]
+
+
+def _rate(scene, tolerance):
+    return asymptotic_variance(scene, tolerance).value
+
+
+if __name__ == "__main__":
+    produce(cost, snakemake)
