@@ -13,6 +13,7 @@ from workflow.experiment import (
     part,
     shards,
     sweep_halving,
+    swept,
 )
 from nonsmooth.errors import NonsmoothError
 

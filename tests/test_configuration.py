@@ -89,7 +89,7 @@ def test_the_smoke_configuration_only_overrides():
         ("variance.finite_difference.time_step", 0.003, "twice it must divide"),
         ("variance.horizon", 0.01, "must be a larger multiple"),
         ("variance.first_time", 0.07, "must be a larger multiple"),
-        ("limit_theorem.scenes", ["no_such_scene"], "not a scene of the sweep"),
+        ("limit_theorem.scenes", ["no_such_scene"], "not a simulated scene of the sweep"),
         ("theorems.ergodicity.scenes", ["no_such_scene"], "not a scene of the sweep"),
         ("theorems.ergodicity.scenes", ["obstacle_langevin"], "more than two state variables"),
         ("theorems.ergodicity.enlargement", 1, "'theorems.ergodicity.enlargement'"),

@@ -68,6 +68,16 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"the spectral method needs the state (y) and white noise, not "
             f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
         )
+    try:
+        return _refined(scene, lower, upper, times, tol)
+    except np.linalg.LinAlgError as error:
+        raise ToleranceError(
+            "the modes of the transport equation are not finite, as where g has a pole or the "
+            f"start is far in the tails ({error}); use method='monte_carlo'"
+        ) from None
+
+
+def _refined(scene, lower, upper, times, tol):
     saddles = _saddles(scene, lower, upper, times)
     solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[0])
     for level in _LEVELS[1:]:

@@ -15,7 +15,7 @@ import sympy
 from numpy.polynomial import legendre
 
 from nonsmooth import models
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.expressions import vectorised
 from nonsmooth.penalties import n as penalization
 
@@ -189,7 +189,12 @@ def spectrum(scene, degree):
     shifted = mass + stiffness / scene.damping
     scale = 1 / np.sqrt(np.diag(shifted))
     balance = np.outer(scale, scale)
-    nu, vectors = scipy.linalg.eigh(mass * balance, shifted * balance)
+    try:
+        nu, vectors = scipy.linalg.eigh(mass * balance, shifted * balance)
+    except (ValueError, np.linalg.LinAlgError):
+        raise ToleranceError(
+            f"the generator of {scene} is beyond the range of numbers; choose C_b and n closer to 1"
+        ) from None
     keep = nu > 1e-13
     nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * scale[:, None]
     vectors /= np.sqrt(nu)  # normalised in L^2(m)

@@ -10,6 +10,7 @@ import xarray as xr
 
 from nonsmooth import models, quadrature, schemes, spectral, transient, wells
 from nonsmooth.closed_form import friction_variance
+from nonsmooth.ergodicity import rate_at_infinity
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate, require
 from nonsmooth.growth import growth, growth_bias, integrals
@@ -22,6 +23,8 @@ _EXACT = {1: 1e-10, 2: 1e-6, 3: 2e-4, 4: 1e-2}  # tolerances by the number of st
 _VARIANCE = {1: 1e-9, 2: 1e-5}  # absolute, of v(tau)/tau
 _SAMPLED, _LEAST_SAMPLED = 1e-2, 1e-3  # tolerances of Monte Carlo: unless given, and the least
 _TIMES = (10.0, 60.0, 110.0)  # between which Monte Carlo takes the slope, unless it changes
+_RELAXED = 2.0  # relaxation times of the drift before the first of them
+_SOFT = 1e3  # n whose drift is looked at for n = inf
 _DOUBLINGS = 7
 _SCOUTS = 1024  # paths from each well
 _STEP = 0.02  # times the smaller of 1 and 1/C_b
@@ -50,7 +53,7 @@ def asymptotic_variance(scene, tol=None, method="deterministic", seed=0, threads
     Raises
     ------
     SceneError
-        If there is no such method.
+        If there is no such method, or g is a function of the noise alone.
     ToleranceError
         If `tol` cannot be met; the message has the best value and its error.
     """
@@ -60,6 +63,11 @@ def asymptotic_variance(scene, tol=None, method="deterministic", seed=0, threads
     if method != "deterministic":
         raise SceneError(
             f"gamma^2 has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
+        )
+    if "y" not in scene.state:
+        raise SceneError(
+            f"g = '{scene.observable}' is a function of the noise alone, which the solvers do not "
+            "take without the velocity; use method='monte_carlo'"
         )
     tol = _EXACT[len(scene.state)] if tol is None else tol
     value, error, name = _deterministic(scene, tol)
@@ -107,13 +115,22 @@ def _first_step(scene):
     return min(_STEP * min(1.0, 1 / scene.damping), schemes.scheme(scene).longest_step(scene) / 2)
 
 
+def _first_times(scene):
+    """Choose the first times of the slope, no shorter than the memory of the drift."""
+    try:
+        rate = rate_at_infinity(scene.with_n(min(scene.n, _SOFT))).value / 2
+    except SceneError:  # the drift is not linear far out: `settled` has to find out
+        return _TIMES
+    return tuple(max(1.0, _RELAXED / (rate * _TIMES[0])) * t for t in _TIMES)
+
+
 def _settled_growth(scene, step, paths, seed, threads):
     """Lengthen the time until the slope of the variance changes neither with it nor with the start.
 
     Paths that never leave the well they start in settle too, on the wrong slope.
     """
     elsewhere = [replace(scene, start=start) for start in wells.starts(scene)]
-    times = _TIMES
+    times = _first_times(scene)
     for attempt in range(_DOUBLINGS):
         own = labelled(seed, attempt)
 

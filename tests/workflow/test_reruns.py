@@ -142,10 +142,14 @@ def test_an_interrupted_run_is_resumed_to_the_same_bytes(smoke_run):
 
 def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
     """One job per scene."""
-    edit(finished.folder / "config/smoke.yaml", "sweep:\n  p: [10]", "sweep:\n  p: [10, 20]")
+    edit(
+        finished.folder / "config/smoke.yaml",
+        "  p: [10]\n  outputs: 8",
+        "  p: [10, 20]\n  outputs: 8",
+    )
     jobs = finished.jobs()
     assert {name for name in jobs if name.startswith("sweep")} == {"sweep_crossing"}
-    assert jobs["sweep_crossing"] == 9
+    assert jobs["sweep_crossing"] == 4
 
 
 def test_a_new_limit_of_the_deformation_is_simulated_alone(finished):
@@ -165,6 +169,6 @@ def test_gamma_does_not_rerun_the_samples_of_the_limit_theorem(finished):
     with open(finished.folder / "src/nonsmooth/growth.py", "a") as file:
         file.write("# changed\n")
     jobs = finished.jobs()
-    assert jobs["sweep_variance"] == 9
+    assert jobs["sweep_variance"] == 4
     assert jobs["check_limit_theorem"] == 1
     assert "limit_theorem_samples" not in jobs

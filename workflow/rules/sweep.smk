@@ -61,7 +61,7 @@ rule sweep_limit:
         variance=expand(
             "{results}/sweep/{scene}/variance.nc",
             results=RESULTS,
-            scene=config["sweep"]["scenes"],
+            scene=swept(config),
         ),
         solved=rules.table_5.input.solved,
         modules=sources("workflow/scripts/sweep/limit.py"),
@@ -75,7 +75,7 @@ rule sweep_limit:
         "../envs/environment.yaml"
     threads: 1
     params:
-        scenes=lookup(dpath="sweep/scenes", within=config),
+        scenes=swept(config),
         names=lookup(dpath="growth/scenes", within=config),
         horizon=lookup(dpath="sweep/horizon", within=config),
         outputs=lookup(dpath="sweep/outputs", within=config),
@@ -90,7 +90,7 @@ rule figure_6:
         crossing=expand(
             "{results}/sweep/{scene}/p={p}.nc",
             results=RESULTS,
-            scene=config["sweep"]["scenes"],
+            scene=swept(config),
             p=map(label, config["sweep"]["p"]),
         ),
         limit=rules.sweep_limit.output[0],
@@ -109,7 +109,7 @@ rule figure_6:
         "../envs/environment.yaml"
     threads: 1
     params:
-        scenes=lookup(dpath="sweep/scenes", within=config),
+        scenes=swept(config),
         p=lookup(dpath="sweep/p", within=config),
     message:
         "Draw figure 6, the crossing probabilities of every scene"
@@ -133,7 +133,7 @@ rule table_6:
         "../envs/environment.yaml"
     threads: 1
     params:
-        scenes=lookup(dpath="sweep/scenes", within=config),
+        scenes=swept(config),
         p=lookup(dpath="sweep/p", within=config),
     message:
         "Typeset table 6, every scene by Monte Carlo"
