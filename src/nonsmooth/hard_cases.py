@@ -123,10 +123,10 @@ def examine(case, paths):
 # What is called
 
 
-def _growth(scene, **options):
+def _growth(scene, deviations=1.0, **options):
     def evaluate(paths):
         found = asymptotic_variance(scene(), **options)
-        return Result(found.value, found.error)
+        return Result(found.value, deviations * found.error)
 
     return evaluate
 
@@ -434,6 +434,12 @@ CASES = [
         lambda: _linear_variance(1.0, 0.01, 50.0),
     ),
     Case(
+        r"Kanai--Tajimi, $\gamma_0 = 0.01$",
+        "asymptotic_variance, Monte Carlo",
+        _growth(_ground, DEVIATIONS, tol=0.2, method="monte_carlo"),
+        lambda: Result(1.0, 0.0),  # the force that is left over time balances the noise
+    ),
+    Case(
         "obstacle, $n = 10^6$, grazing start",
         "simulate, mean",
         _simulated(_grazing, 400.0, "mean", 400.0, share=0.2, step=0.05),
@@ -444,6 +450,18 @@ CASES = [
         "simulate",
         _simulated(_wells, 20.0, step=0.02),
         _other(_solved(_wells, 20.0, tol=2e-2)),
+    ),
+    Case(
+        "double well, barrier $8 kT$",
+        "asymptotic_variance",
+        _growth(_wells, tol=1e-2),
+        _other(_growth(_wells, tol=1e-5)),
+    ),
+    Case(
+        "double well, barrier $8 kT$",
+        "asymptotic_variance, Monte Carlo",
+        _growth(_wells, tol=0.2, method="monte_carlo"),
+        None,
     ),
     Case(
         "$p = 10^6$",
