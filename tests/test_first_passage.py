@@ -130,6 +130,19 @@ class TestSpectral:
         expected = first_passage(ordinates(FRICTION, 13, 0.1), 2.0, -0.6, 0.6).real
         assert transform == pytest.approx(expected, rel=1e-5)
 
+    @pytest.mark.parametrize(
+        ("scene", "given", "method"),
+        [
+            (FRICTION, {"tol": 1e-2}, "spectral"),
+            (FRICTION, {"paths": 10}, "monte_carlo"),
+            (FRICTION, {"order": 1}, "corrected"),
+            (ns.Scene("friction", "langevin"), {"tol": 0.1}, "monte_carlo"),
+        ],
+    )
+    def test_method_follows_from_what_is_given(self, scene, given, method):
+        """And is told."""
+        assert ns.crossing_probability(scene, 0.6, [1.0], **given).attrs["method"] == method
+
     def test_other_scenes_are_told_to_sample(self):
         """The message names the method to use."""
         with pytest.raises(ns.NonsmoothError, match="monte_carlo"):

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 import xarray as xr
 
-from nonsmooth import schemes
+from nonsmooth import schemes, spectral
 from nonsmooth.brownian import asymptotic_crossing
 from nonsmooth.corrected import corrected_crossing
 from nonsmooth.errors import SceneError
@@ -187,7 +187,7 @@ def crossing_probability(
     threshold,
     horizons,
     p=1.0,
-    method="monte_carlo",
+    method=None,
     tol=None,
     step=None,
     paths=None,
@@ -208,8 +208,9 @@ def crossing_probability(
         Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem, > 0.
-    method : {"monte_carlo", "spectral", "asymptotic", "corrected"}
-        ``"spectral"`` is deterministic, for one state variable and white noise.
+    method : {"monte_carlo", "spectral", "asymptotic", "corrected"}, optional
+        ``"spectral"`` is deterministic, for one state variable and white noise: it is taken there
+        unless a parameter of another method is given, and ``"monte_carlo"`` elsewhere.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`.
     tol : float, optional
@@ -231,9 +232,10 @@ def crossing_probability(
     Returns
     -------
     xarray.Dataset
-        Over `horizon`: `probability` and `probability_error`, for ``"monte_carlo"`` the
-        standard error, with the 95 % confidence limits `lower` and `upper`, and `step_bias`, the
-        bias of the time step as measured by halving it, with its standard error
+        Over `horizon`, with the method among its attributes: `probability` and
+        `probability_error`, for ``"monte_carlo"`` the standard error, with the 95 % confidence
+        limits `lower` and `upper`, and `step_bias`, the bias of the time step as measured by
+        halving it, with its standard error
         `step_bias_error`; for ``"spectral"`` the difference of two resolutions, with `survival`
         and `survival_error`, the complement to relative accuracy; for the formulas the error
         inherited from gamma^2 and the other constants only, not the distance to the finite-p
@@ -253,10 +255,12 @@ def crossing_probability(
     require_positive("p", p)
     if tol is not None:
         require_positive("tol", tol)
-    if method not in METHODS:
-        raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: value for name, value in options.items() if value is not None}
+    if method is None:
+        method = _chosen(scene, given)
+    if method not in METHODS:
+        raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
     for name in given:
         if name not in inspect.signature(METHODS[method]).parameters:
             raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
@@ -266,8 +270,15 @@ def crossing_probability(
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
-        attrs=attributes,
+        attrs={"method": method} | attributes,
     )
+
+
+def _chosen(scene, given):
+    if "order" in given:
+        return "corrected"
+    sampled = {"step", "paths", "precision"} & given.keys()
+    return "spectral" if spectral.applies(scene) and not sampled else "monte_carlo"
 
 
 def _monte_carlo(

@@ -19,7 +19,8 @@ from nonsmooth.transport import first_passage
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
 # rises; more nodes, of larger real part, would only make the rounding errors grow
-_LEVELS = ((7, 9, 0.85), (9, 11, 0.75), (11, 12, 0.7), (14, 13, 0.65))
+_LEVELS = ((4, 6, 1.2), (7, 9, 0.85), (9, 11, 0.75), (11, 12, 0.7), (14, 13, 0.65))
+_LOOSE = 1e-4  # tolerance that the first levels may meet
 _PER_DECADE = 10  # nodes more for each decade of times
 _SECTOR = 0.3  # half angle about the negative axis, of the poles
 # last time over first time, of a contour; while the probability rises, and the rise then
@@ -79,8 +80,9 @@ def spectral_crossing(scene, lower, upper, times, tol):
 
 def _refined(scene, lower, upper, times, tol):
     saddles = _saddles(scene, lower, upper, times)
-    solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[0])
-    for level in _LEVELS[1:]:
+    first = 0 if tol >= _LOOSE else 1
+    solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[first])
+    for level in _LEVELS[first + 1 :]:
         coarse, solution = solution, _solve(scene, lower, upper, times, saddles, *level)
         error = _largest_nearby(np.abs(solution - coarse), solution, times)
         error += 1e-13 * solution + _UNDERFLOW
@@ -140,7 +142,7 @@ def _saddles(scene, lower, upper, times):
         # the saddle of the time t is where z t = d log F / d log z, which is less than log F
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
         grid = ordinates(
-            scene, _LEVELS[0][0], depth / z, _FINELY, _reach(scene, depth / z, depth / 2)
+            scene, _LEVELS[1][0], depth / z, _FINELY, _reach(scene, depth / z, depth / 2)
         )
         value = first_passage(grid, z, lower, upper).real
         if value < _ROUNDED:
