@@ -7,7 +7,7 @@ from scipy.linalg import eigh_tridiagonal
 from scipy.optimize import minimize
 
 import nonsmooth as ns
-from nonsmooth import lyapunov, quadrature
+from nonsmooth import ergodicity, lyapunov, quadrature
 from nonsmooth.ergodicity import decay_rate, poisson_bound, rate_at_infinity
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.models import x, y
@@ -99,7 +99,7 @@ def test_poisson_bound_under_friction(damping, n):
     exact = np.max(u / (lyapunov.evaluate(scene, {y: z}, "value")[0] + 1))
     found = poisson_bound(scene)
     assert abs(found.constant - exact) <= found.error < 0.01 * exact
-    assert found.edge < 0.9 * exact
+    assert found.edge < exact - found.error
 
 
 @pytest.mark.parametrize(("damping", "stiffness"), [(3.0, 1.0), (0.7, 1.5)])
@@ -133,8 +133,9 @@ def test_what_has_no_rate_is_refused():
         decay_rate(ns.Scene("friction"), 1e-4)
 
 
-def test_a_narrow_valley_is_refused():
-    """V of stiff walls is large but for |z| < 1e-4, between the nodes."""
+def test_the_narrow_valley_of_stiff_walls():
+    """V is large but for |z| < 1e-4: as on a grid of two levels more."""
     scene = ns.Scene("obstacle", n=1000, potential="x**2/2", observable="x")
-    with pytest.raises(ToleranceError, match="smaller n"):
-        poisson_bound(scene)
+    found = poisson_bound(scene)
+    finer, _ = ergodicity._largest(scene, 4, 1.0)
+    assert abs(found.constant - finer) <= found.error < 1e-3 * finer

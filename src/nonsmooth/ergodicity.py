@@ -27,6 +27,7 @@ _SETTLED, _FLOOR = 1e-3, 1e-10  # of the norm at the start, between which the ra
 # all of it, and half as much again for complex pairs
 _UNSETTLED = 5.6
 _LONGEST = 20_000  # steps
+_TRUSTED = 0.75  # of a box, in whose corners the solution sees where it ends
 _POINTS, _NEAREST = 60, 1e-4  # points on each side of 0, and the first of them
 _ROUNDS, _NEAR = 6, 13  # closer looks at the largest value, and points of each variable in them
 _ROUNDING = 1e-11  # relative; against linear scenes it comes to 2e-12
@@ -155,7 +156,7 @@ def poisson_bound(scene, enlargement=2.0):
         If the grid does not resolve where |u| / (V_n + 1) is large.
     """
     _require_grid(scene)
-    narrow, _ = _largest(scene, _FINE)
+    narrow, _ = _largest(scene, _FINE, (enlargement - 1) / 2)
     coarse, _ = _largest(scene, _COARSE, enlargement - 1)
     constant, edge = _largest(scene, _FINE, enlargement - 1)
     error = abs(constant - coarse) + abs(constant - narrow) + _ROUNDING * constant
@@ -188,7 +189,7 @@ def _lyapunov(scene, axes, points=None):
 
 
 def _largest(scene, level, margin=0.0):
-    """Find the largest |u| / (V_n + 1) on a box, and on its surface."""
+    """Find the largest |u| / (V_n + 1) in the trusted part of a box, and on its surface."""
     axes, solver, g = _discretised(scene, level, margin)
     u = solver.unfold(solver.solve(solver.fold(g), ODD)[0], ODD)
     u -= solver.stationary() @ u
@@ -203,7 +204,7 @@ def _largest(scene, level, margin=0.0):
 
     points = {}
     for symbol, axis in axes.items():  # V_n has a narrow valley at 0
-        positive = np.geomspace(_NEAREST, axis.edges[-1], _POINTS)
+        positive = np.geomspace(_NEAREST, _TRUSTED * axis.edges[-1], _POINTS)
         points[symbol] = np.concatenate([-positive[::-1], [0.0], positive])
     found = ratio(points)
     inner = np.pad(np.ones([k - 2 for k in found.shape]), 1)
