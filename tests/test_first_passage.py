@@ -8,12 +8,15 @@ from scipy.interpolate import CubicSpline
 from scipy.special import erfc
 
 import nonsmooth as ns
+from nonsmooth.errors import AssumptionWarning
 from nonsmooth.laplace import hyperbola
 from nonsmooth.milne import expansion
 from nonsmooth.ordinates import ordinates
 from nonsmooth.transport import first_passage
 
 FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
+# g without symmetry, centred; 4e-16 is the error of the mean
+SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
 DIGITS = 1e-7  # a unit in the last of seven
 
 
@@ -91,6 +94,37 @@ class TestSpectral:
             bias = np.abs(sample.step_bias) + sample.step_bias_error
             gap = np.abs(sample.probability - exact(threshold, [2.0], 1).probability)
             assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize("threshold", [(-np.inf, 0.6), (-0.3, 0.6)])
+    def test_monte_carlo_without_symmetry(self, threshold):
+        """As above; false alarms 1e-5."""
+        sample = ns.crossing_probability(SKEWED, threshold, [2.0], 1, paths=40_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        gap = np.abs(sample.probability - exact(threshold, [2.0], 1, SKEWED).probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize("z", [0.7, 0.3 + 2j, -0.5 + 2j])
+    def test_transform_without_symmetry(self, z):
+        """Converges in the degree, and the mirrored scene has the mirrored walls."""
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        for walls in ((-0.3, 0.6), (-np.inf, 0.6)):
+            values = [
+                first_passage(ordinates(SKEWED, degree, 1.0), z, *walls) for degree in (7, 9, 13)
+            ]
+            assert abs(values[0] - values[2]) < 1e-6
+            assert abs(values[1] - values[2]) < 1e-7
+            swapped = first_passage(ordinates(mirrored, 9, 1.0), z, -walls[1], -walls[0])
+            assert abs(swapped - values[1]) < 1e-9
+
+    def test_two_zeros_of_g(self):
+        """A g that is positive in both tails; false alarms 1e-5."""
+        with pytest.warns(AssumptionWarning):
+            scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
+        sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        found = exact(0.6, [2.0], 1, scene, tol=1e-4)
+        gap = np.abs(sample.probability - found.probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-4
 
     def test_survival_decays_like_its_leading_pole(self):
         """To relative accuracy, far below the rounding of 1 - W."""
