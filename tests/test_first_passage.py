@@ -1,5 +1,7 @@
 """First passage by Case modes, the Milne problem and the corrected formulas."""
 
+from dataclasses import replace
+
 import mpmath
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from scipy.special import erfc
 
 import nonsmooth as ns
 from nonsmooth.errors import AssumptionWarning
+from nonsmooth.half_space import walls
 from nonsmooth.laplace import hyperbola
 from nonsmooth.milne import expansion
 from nonsmooth.ordinates import ordinates
@@ -63,10 +66,33 @@ class TestMilne:
         gamma2 = ns.asymptotic_variance(FRICTION.with_n(n)).value
         assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
 
+    def test_two_lengths_of_a_g_without_symmetry(self, monkeypatch):
+        """Those of the mirrored scene swapped, D of the quadrature; equal ones where g is odd."""
+        lower, upper = ns.extrapolation_length(SKEWED)
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        other_lower, other_upper = ns.extrapolation_length(mirrored)
+        assert abs(lower.value - other_upper.value) <= lower.error + other_upper.error + 1e-12
+        assert abs(upper.value - other_lower.value) <= upper.error + other_lower.error + 1e-12
+        found, errors = walls(SKEWED)
+        gamma2 = ns.asymptotic_variance(SKEWED).value
+        assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)  # the whole grid
+        for length in ns.extrapolation_length(FRICTION):
+            assert abs(length.value - 0.2911259630) < 2e-9
+
+    def test_needs_a_centred_g(self):
+        """The message has the mean."""
+        with pytest.raises(ns.NonsmoothError, match="subtract"):
+            ns.extrapolation_length(ns.Scene("friction", observable="y + abs(y)/2"))
+
     def test_refuses_what_it_cannot(self):
         """Colored noise has no such solver."""
-        with pytest.raises(ns.NonsmoothError, match="white noise and odd g"):
+        with pytest.raises(ns.NonsmoothError, match="white noise"):
             ns.extrapolation_length(ns.Scene("friction", "langevin"))
+        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
+            ns.crossing_probability(
+                ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected"
+            )
 
 
 def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
@@ -107,13 +133,13 @@ class TestSpectral:
     def test_transform_without_symmetry(self, z):
         """Converges in the degree, and the mirrored scene has the mirrored walls."""
         mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
-        for walls in ((-0.3, 0.6), (-np.inf, 0.6)):
+        for levels in ((-0.3, 0.6), (-np.inf, 0.6)):
             values = [
-                first_passage(ordinates(SKEWED, degree, 1.0), z, *walls) for degree in (7, 9, 13)
+                first_passage(ordinates(SKEWED, degree, 1.0), z, *levels) for degree in (7, 9, 13)
             ]
             assert abs(values[0] - values[2]) < 1e-6
             assert abs(values[1] - values[2]) < 1e-7
-            swapped = first_passage(ordinates(mirrored, 9, 1.0), z, -walls[1], -walls[0])
+            swapped = first_passage(ordinates(mirrored, 9, 1.0), z, -levels[1], -levels[0])
             assert abs(swapped - values[1]) < 1e-9
 
     def test_two_zeros_of_g(self):
@@ -122,9 +148,9 @@ class TestSpectral:
             scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
         sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
         bias = np.abs(sample.step_bias) + sample.step_bias_error
-        found = exact(0.6, [2.0], 1, scene, tol=1e-4)
+        found = exact(0.6, [2.0], 1, scene, tol=1e-3)
         gap = np.abs(sample.probability - found.probability)
-        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-4
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-3
 
     def test_survival_decays_like_its_leading_pole(self):
         """To relative accuracy, far below the rounding of 1 - W."""
@@ -198,6 +224,24 @@ class TestCorrected:
         """For every kind of threshold."""
         assert self.slope(threshold, method="corrected") == pytest.approx(-1, abs=0.15)
 
+    @pytest.mark.parametrize("threshold", [(-0.3, 0.6), (-np.inf, 0.6)])
+    def test_without_symmetry(self, threshold):
+        """From p = 100 to 1e4, the spectral values to 1e-6, 1e-3 to 1e-1 of the errors."""
+        scene = replace(SKEWED, start={"y": 0.2})
+        errors = [
+            abs(
+                float(
+                    ns.crossing_probability(
+                        scene, threshold, [2.0], p, method="corrected"
+                    ).probability[0]
+                    - exact(threshold, [2.0], p, scene).probability[0]
+                )
+            )
+            for p in self.P
+        ]
+        slope = np.log(errors[1] / errors[0]) / np.log(self.P[1] / self.P[0])
+        assert slope == pytest.approx(-1, abs=0.15)
+
     def test_second_order(self):
         """For equal thresholds."""
         # the error at p = 1e4, 2e-8, is that of the spectral value: one decade
@@ -219,3 +263,8 @@ class TestCorrected:
         """The message names the cure."""
         with pytest.raises(ns.NonsmoothError, match="order=1"):
             ns.crossing_probability(FRICTION, (-1, 2), [1.0], method="corrected", order=2)
+
+    def test_second_order_needs_odd_g(self):
+        """The message names the cure."""
+        with pytest.raises(ns.NonsmoothError, match="order=1"):
+            ns.crossing_probability(SKEWED, 0.6, [1.0], method="corrected", order=2)

@@ -13,12 +13,12 @@ import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
-from nonsmooth.ordinates import ordinates
+from nonsmooth.half_space import walls
+from nonsmooth.ordinates import UNHURRIED, ordinates
 from nonsmooth.poisson import EVEN, ODD
 from nonsmooth.spectral import applies
 
 _DEGREES = (7, 9, 11, 13, 15, 17, 20)
-_UNHURRIED = 1e3  # a time beyond which the grid no longer depends on it, in units of 1 / C_b
 
 
 @dataclass(frozen=True)
@@ -53,14 +53,15 @@ def extrapolation_length(scene, tol=1e-8):
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and odd g: kappa is then the same at both thresholds.
+        With the state y, white noise, and E g = 0.
     tol : float
         Absolute error wanted, "1".
 
     Returns
     -------
-    Estimate
-        The error is the difference of two polynomial degrees.
+    Estimate or (Estimate, Estimate)
+        For odd g one kappa, the same at both thresholds; otherwise those of the lower and of the
+        upper threshold. The error is the difference of two polynomial degrees.
 
     Raises
     ------
@@ -70,6 +71,13 @@ def extrapolation_length(scene, tol=1e-8):
         If `tol` is not met; the message has the best value and its error.
     """
     began = time.perf_counter()
+    if applies(scene) and not scene.is_odd():
+        constants, errors = walls(scene, tol)
+        seconds = time.perf_counter() - began
+        return tuple(
+            Estimate(getattr(constants, side), getattr(errors, side), "discrete ordinates", seconds)
+            for side in ("lower", "upper")
+        )
     constants, errors = expansion(scene, tol)
     return Estimate(
         constants.length, errors.length, "discrete ordinates", time.perf_counter() - began
@@ -95,8 +103,8 @@ def expansion(scene, tol=1e-8):
     """
     if not (applies(scene) and scene.is_odd()):
         raise SceneError(
-            f"the extrapolation length is computed for the state (y), white noise and odd g, not "
-            f"for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
+            f"the constants of second order are computed for the state (y), white noise and odd g, "
+            f"not for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
             f"{scene.observable!r}; choose such a scene"
         )
     values = _expansion(scene, _DEGREES[0])
@@ -119,7 +127,7 @@ def _expansion(scene, degree):
     Cholesky factors of the stiffness matrices they are the singular vectors of one matrix, and
     1/mu its singular values.
     """
-    grid = ordinates(scene, degree, _UNHURRIED / scene.damping)
+    grid = ordinates(scene, degree, UNHURRIED / scene.damping)
     inner = slice(1, None)  # without the origin
     kept = np.flatnonzero(grid.g[inner])
     g, weights = grid.g[inner], grid.masses[inner]
