@@ -1,8 +1,8 @@
 """Corrected asymptotic formulas for threshold crossing.
 
-With e = p^(-1/2) and odd g: towards a threshold b, int g behaves like a Brownian motion of variance 2 D t
-towards b + e kappa (order 1, error O(1/p)). Order 2 adds, for equal thresholds, that waves
-cos(k x) decay at the rate D k^2 - e^2 B k^4 and that the start weakens them by
+With e = p^(-1/2) and odd g: towards a threshold b, int g behaves like a Brownian motion of
+variance 2 D t towards b + e kappa (order 1, error O(1/p)). Order 2 adds, for equal thresholds, that
+waves cos(k x) decay at the rate D k^2 - e^2 B k^4 and that the start weakens them by
 1 + e^2 k^2 (S - h): error O(p^(-3/2)).
 
 Without symmetry of g each threshold has its kappa, and the third cumulant of int g, 6 C t, enters
