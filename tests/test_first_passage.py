@@ -15,6 +15,7 @@ from nonsmooth.half_space import walls
 from nonsmooth.laplace import hyperbola
 from nonsmooth.milne import expansion
 from nonsmooth.ordinates import ordinates
+from nonsmooth.overshoot import sampled_length
 from nonsmooth.transport import first_passage
 
 FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
@@ -88,16 +89,37 @@ class TestMilne:
     def test_refuses_what_it_cannot(self):
         """Colored noise has no such solver."""
         with pytest.raises(ns.NonsmoothError, match="white noise"):
-            ns.extrapolation_length(ns.Scene("friction", "langevin"))
+            expansion(ns.Scene("friction", "langevin"))
         with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
             ns.crossing_probability(
-                ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected"
+                ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
             )
 
 
 def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
     """Spectral values."""
     return ns.crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tol)
+
+
+class TestSampledLength:
+    """kappa by Monte Carlo."""
+
+    def test_of_dry_friction(self):
+        """Within the stated error, which holds the standard error once: seeds are fixed."""
+        found = sampled_length(FRICTION, seed=1)
+        assert abs(found.value - 0.2911259630) < found.error
+        assert found.error < 0.1 * found.value
+
+    def test_formula_for_colored_noise(self):
+        """Against Monte Carlo at p = 100; the formula's own error is below 0.01 there."""
+        scene = ns.Scene("friction", "langevin")
+        formula = ns.crossing_probability(scene, 0.6, [2.0], 100, method="corrected", seed=1)
+        sample = ns.crossing_probability(scene, 0.6, [2.0], 100, paths=4_000, step=0.05, seed=2)
+        limit = ns.crossing_probability(scene, 0.6, [2.0], 100, method="asymptotic")
+        gap, plain = (abs(float((f - sample).probability[0])) for f in (formula, limit))
+        allowed = formula.probability_error + 4.5 * sample.probability_error + 0.01
+        assert gap < float(allowed[0])
+        assert gap < plain
 
 
 class TestSpectral:

@@ -17,20 +17,24 @@ import numpy as np
 
 from nonsmooth.brownian import brownian_crossing, brownian_exit
 from nonsmooth.errors import SceneError
-from nonsmooth.half_space import walls
+from nonsmooth.half_space import Walls, walls
 from nonsmooth.milne import expansion
+from nonsmooth.overshoot import sampled_length
 from nonsmooth.spectral import applies
+from nonsmooth.streams import labelled
+from nonsmooth.variance import limit_variance
 
 _TERMS = np.arange(4000)
 
 
-def corrected_crossing(scene, lower, upper, horizons, p, order):
+def corrected_crossing(scene, lower, upper, horizons, p, order, seed=0, threads=None):
     """P(int_0^t g leaves (sqrt(p) lower, sqrt(p) upper) before p T), corrected for a finite p.
 
     Parameters
     ----------
     scene : Scene
-        With the state y and white noise; odd g for order 2.
+        With the state y and white noise; odd g for order 2. Any other with odd g and the start at
+        the origin, for order 1.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite, "1".
     horizons : numpy.ndarray, shape (k,)
@@ -38,6 +42,8 @@ def corrected_crossing(scene, lower, upper, horizons, p, order):
     p : float
     order : {1, 2}
         2 needs lower = -upper.
+    seed, threads
+        Of the constants that are sampled.
 
     Returns
     -------
@@ -57,11 +63,8 @@ def corrected_crossing(scene, lower, upper, horizons, p, order):
             "the corrected formula of order 2 needs the same threshold on both sides; use order=1"
         )
     if not applies(scene):
-        raise SceneError(
-            f"the corrected formula needs the state (y) and white noise, not "
-            f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
-        )
-    if scene.is_odd():
+        (constants, errors), formula = _sampled(scene, order, seed, threads), _skewed
+    elif scene.is_odd():
         (constants, errors), formula = expansion(scene), _first if order == 1 else _second
     elif order == 1:
         (constants, errors), formula = walls(scene), _skewed
@@ -77,6 +80,21 @@ def corrected_crossing(scene, lower, upper, horizons, p, order):
         shifted = replace(constants, **{name: getattr(constants, name) + getattr(errors, name)})
         error += np.abs(formula(shifted, lower, upper, horizons, p) - value)
     return value, error
+
+
+def _sampled(scene, order, seed, threads):
+    if order == 2 or any(scene.start.values()):
+        raise SceneError(
+            f"for the state ({', '.join(scene.state)}) with {scene.noise.title} the corrected "
+            "formula has order 1, from the origin; use order=1 and that start, or "
+            "method='monte_carlo'"
+        )
+    length = sampled_length(scene, seed=labelled(seed, "length"), threads=threads)
+    gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
+    return (
+        Walls(gamma2.value / 2, length.value, length.value, 0.0, 0.0),
+        Walls(gamma2.error / 2, length.error, length.error, 0.0, 0.0),
+    )
 
 
 def _skewed(constants, lower, upper, horizons, p):

@@ -15,9 +15,11 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.half_space import walls
 from nonsmooth.ordinates import UNHURRIED, ordinates
+from nonsmooth.overshoot import sampled_length
 from nonsmooth.poisson import EVEN, ODD
 from nonsmooth.spectral import applies
 
+_EXACT = 1e-8
 _DEGREES = (7, 9, 11, 13, 15, 17, 20)
 
 
@@ -47,21 +49,24 @@ class Expansion:
     start: float
 
 
-def extrapolation_length(scene, tol=1e-8):
+def extrapolation_length(scene, tol=None, seed=0, threads=None):
     """Distance kappa by which the threshold of the Brownian limit lies beyond the scene's.
 
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and E g = 0.
-    tol : float
-        Absolute error wanted, "1".
+        With the state y, white noise, and E g = 0, or any other with odd g, by Monte Carlo.
+    tol : float, optional
+        Absolute error wanted, "1"; 1e-8, or by Monte Carlo a tenth of kappa, unless given.
+    seed, threads
+        Of Monte Carlo: int or tuple; all cores unless given.
 
     Returns
     -------
     Estimate or (Estimate, Estimate)
         For odd g one kappa, the same at both thresholds; otherwise those of the lower and of the
-        upper threshold. The error is the difference of two polynomial degrees.
+        upper threshold. The error is the difference of two polynomial degrees; of Monte Carlo, see
+        `overshoot.sampled_length`.
 
     Raises
     ------
@@ -70,8 +75,11 @@ def extrapolation_length(scene, tol=1e-8):
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
+    if not applies(scene):
+        return sampled_length(scene, tol, seed, threads)
+    tol = _EXACT if tol is None else tol
     began = time.perf_counter()
-    if applies(scene) and not scene.is_odd():
+    if not scene.is_odd():
         constants, errors = walls(scene, tol)
         seconds = time.perf_counter() - began
         return tuple(
@@ -84,13 +92,13 @@ def extrapolation_length(scene, tol=1e-8):
     )
 
 
-def expansion(scene, tol=1e-8):
+def expansion(scene, tol=_EXACT):
     """Compute the constants of the corrected asymptotic formula.
 
     Parameters
     ----------
     scene, tol
-        As for `extrapolation_length`; `tol` is the absolute error wanted of all constants.
+        The state y, white noise and odd g; absolute error wanted of all constants.
 
     Returns
     -------
