@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.brownian import asymptotic_crossing
+from nonsmooth.brownian import asymptotic_crossing, brownian_exit
 from nonsmooth.errors import SceneError
 
 FUNCTIONS = (ns.brownian_crossing, ns.brownian_survival, ns.brownian_first_passage_density)
@@ -156,3 +156,15 @@ def test_error_of_the_limit_is_inherited_from_gamma(threshold):
     unknown = asymptotic_crossing(threshold, T, 0.14, 0.2)[1]
     assert np.all(np.isfinite(unknown))
     assert np.all(unknown >= value)
+
+
+@pytest.mark.parametrize("lower", [-0.4, -1.3, -np.inf])
+def test_exits_by_either_level_add_up(lower):
+    """To the crossing of either; the shares at T = inf are those of the martingale."""
+    T = np.concatenate([[0.0], np.geomspace(1e-2, 1e3, 60)])
+    above = brownian_exit(1.3, T, lower)
+    below = brownian_exit(-lower, T, -1.3)
+    assert np.allclose(above + below, ns.brownian_crossing(1.3, T, lower), rtol=0, atol=1e-14)
+    assert np.all(np.diff(above) >= -1e-15)
+    if np.isfinite(lower):
+        assert above[-1] == pytest.approx(lower / (lower - 1.3), rel=1e-14)

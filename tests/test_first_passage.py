@@ -1,5 +1,7 @@
 """First passage by Case modes, the Milne problem and the corrected formulas."""
 
+from dataclasses import replace
+
 import mpmath
 import numpy as np
 import pytest
@@ -8,12 +10,17 @@ from scipy.interpolate import CubicSpline
 from scipy.special import erfc
 
 import nonsmooth as ns
+from nonsmooth.errors import AssumptionWarning
+from nonsmooth.half_space import walls
 from nonsmooth.laplace import hyperbola
 from nonsmooth.milne import expansion
 from nonsmooth.ordinates import ordinates
+from nonsmooth.overshoot import sampled_length
 from nonsmooth.transport import first_passage
 
 FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
+# g without symmetry, centred; 4e-16 is the error of the mean
+SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
 DIGITS = 1e-7  # a unit in the last of seven
 
 
@@ -60,15 +67,59 @@ class TestMilne:
         gamma2 = ns.asymptotic_variance(FRICTION.with_n(n)).value
         assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
 
+    def test_two_lengths_of_a_g_without_symmetry(self, monkeypatch):
+        """Those of the mirrored scene swapped, D of the quadrature; equal ones where g is odd."""
+        lower, upper = ns.extrapolation_length(SKEWED)
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        other_lower, other_upper = ns.extrapolation_length(mirrored)
+        assert abs(lower.value - other_upper.value) <= lower.error + other_upper.error + 1e-12
+        assert abs(upper.value - other_lower.value) <= upper.error + other_lower.error + 1e-12
+        found, errors = walls(SKEWED)
+        gamma2 = ns.asymptotic_variance(SKEWED).value
+        assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)  # the whole grid
+        for length in ns.extrapolation_length(FRICTION):
+            assert abs(length.value - 0.2911259630) < 2e-9
+
+    def test_needs_a_centred_g(self):
+        """The message has the mean."""
+        with pytest.raises(ns.NonsmoothError, match="subtract"):
+            ns.extrapolation_length(ns.Scene("friction", observable="y + abs(y)/2"))
+
     def test_refuses_what_it_cannot(self):
         """Colored noise has no such solver."""
-        with pytest.raises(ns.NonsmoothError, match="white noise and odd g"):
-            ns.extrapolation_length(ns.Scene("friction", "langevin"))
+        with pytest.raises(ns.NonsmoothError, match="white noise"):
+            expansion(ns.Scene("friction", "langevin"))
+        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
+            ns.crossing_probability(
+                ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
+            )
 
 
 def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
     """Spectral values."""
     return ns.crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tol)
+
+
+class TestSampledLength:
+    """kappa by Monte Carlo."""
+
+    def test_of_dry_friction(self):
+        """Within the stated error, which holds the standard error once: seeds are fixed."""
+        found = sampled_length(FRICTION, seed=1)
+        assert abs(found.value - 0.2911259630) < found.error
+        assert found.error < 0.1 * found.value
+
+    def test_formula_for_colored_noise(self):
+        """Against Monte Carlo at p = 100; the formula's own error is below 0.01 there."""
+        scene = ns.Scene("friction", "langevin")
+        formula = ns.crossing_probability(scene, 0.6, [2.0], 100, method="corrected", seed=1)
+        sample = ns.crossing_probability(scene, 0.6, [2.0], 100, paths=4_000, step=0.05, seed=2)
+        limit = ns.crossing_probability(scene, 0.6, [2.0], 100, method="asymptotic")
+        gap, plain = (abs(float((f - sample).probability[0])) for f in (formula, limit))
+        allowed = formula.probability_error + 4.5 * sample.probability_error + 0.01
+        assert gap < float(allowed[0])
+        assert gap < plain
 
 
 class TestSpectral:
@@ -91,6 +142,37 @@ class TestSpectral:
             bias = np.abs(sample.step_bias) + sample.step_bias_error
             gap = np.abs(sample.probability - exact(threshold, [2.0], 1).probability)
             assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize("threshold", [(-np.inf, 0.6), (-0.3, 0.6)])
+    def test_monte_carlo_without_symmetry(self, threshold):
+        """As above; false alarms 1e-5."""
+        sample = ns.crossing_probability(SKEWED, threshold, [2.0], 1, paths=40_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        gap = np.abs(sample.probability - exact(threshold, [2.0], 1, SKEWED).probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize("z", [0.7, 0.3 + 2j, -0.5 + 2j])
+    def test_transform_without_symmetry(self, z):
+        """Converges in the degree, and the mirrored scene has the mirrored walls."""
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        for levels in ((-0.3, 0.6), (-np.inf, 0.6)):
+            values = [
+                first_passage(ordinates(SKEWED, degree, 1.0), z, *levels) for degree in (7, 9, 13)
+            ]
+            assert abs(values[0] - values[2]) < 1e-6
+            assert abs(values[1] - values[2]) < 1e-7
+            swapped = first_passage(ordinates(mirrored, 9, 1.0), z, -levels[1], -levels[0])
+            assert abs(swapped - values[1]) < 1e-9
+
+    def test_two_zeros_of_g(self):
+        """A g that is positive in both tails; false alarms 1e-5."""
+        with pytest.warns(AssumptionWarning):
+            scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
+        sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        found = exact(0.6, [2.0], 1, scene, tol=1e-3)
+        gap = np.abs(sample.probability - found.probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-3
 
     def test_survival_decays_like_its_leading_pole(self):
         """To relative accuracy, far below the rounding of 1 - W."""
@@ -177,6 +259,24 @@ class TestCorrected:
         """For every kind of threshold."""
         assert self.slope(threshold, method="corrected") == pytest.approx(-1, abs=0.15)
 
+    @pytest.mark.parametrize("threshold", [(-0.3, 0.6), (-np.inf, 0.6)])
+    def test_without_symmetry(self, threshold):
+        """From p = 100 to 1e4, the spectral values to 1e-6, 1e-3 to 1e-1 of the errors."""
+        scene = replace(SKEWED, start={"y": 0.2})
+        errors = [
+            abs(
+                float(
+                    ns.crossing_probability(
+                        scene, threshold, [2.0], p, method="corrected"
+                    ).probability[0]
+                    - exact(threshold, [2.0], p, scene).probability[0]
+                )
+            )
+            for p in self.P
+        ]
+        slope = np.log(errors[1] / errors[0]) / np.log(self.P[1] / self.P[0])
+        assert slope == pytest.approx(-1, abs=0.15)
+
     def test_second_order(self):
         """For equal thresholds."""
         # the error at p = 1e4, 2e-8, is that of the spectral value: one decade
@@ -198,3 +298,8 @@ class TestCorrected:
         """The message names the cure."""
         with pytest.raises(ns.NonsmoothError, match="order=1"):
             ns.crossing_probability(FRICTION, (-1, 2), [1.0], method="corrected", order=2)
+
+    def test_second_order_needs_odd_g(self):
+        """The message names the cure."""
+        with pytest.raises(ns.NonsmoothError, match="order=1"):
+            ns.crossing_probability(SKEWED, 0.6, [1.0], method="corrected", order=2)

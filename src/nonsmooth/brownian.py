@@ -12,7 +12,7 @@ terms that count have one sign.
 """
 
 import numpy as np
-from scipy.special import erf, erfcx
+from scipy.special import erf, erfc, erfcx
 
 from nonsmooth.errors import SceneError
 from nonsmooth.thresholds import bounds
@@ -51,6 +51,41 @@ def brownian_crossing(b, T, lower=None):
     path = _Path(b, T, lower)
     early = path.tail(path.near) + path.reflected(path.tail)
     return path.chosen(early, 1 - path.modes(lambda n: 4 / (np.pi * n)), 0.0)
+
+
+def brownian_exit(b, T, lower):
+    """Probability that W reaches b before T and before the lower level.
+
+    Parameters
+    ----------
+    b, lower : float
+        lower < 0 < b, each possibly infinite.
+    T : numpy.ndarray
+        Horizons, "1"; 0 where they are not positive.
+
+    Returns
+    -------
+    numpy.ndarray
+        With an absolute error of some units in the last place of 1.
+    """
+    T = np.asarray(T, dtype=float)
+    value = np.zeros(T.shape)
+    late = T > 0
+    if np.isinf(b) or not late.any():
+        return value
+    root = np.sqrt(2 * T[late])
+    if np.isinf(lower):
+        value[late] = erfc(b / root)
+        return value
+    width = b - lower
+    k = np.arange(1, 9)  # what is left out is below exp(-40), on either side of T = L^2
+    modes = -lower / width + 2 / np.pi * np.exp(
+        -np.outer(T[late], (k * np.pi / width) ** 2 / 2)
+    ) @ ((-1.0) ** k / k * np.sin(-k * np.pi * lower / width))
+    far = 2 * width * (k - 1)
+    images = erfc((far + b) / root[:, None]) - erfc((far + 2 * width - b) / root[:, None])
+    value[late] = np.where(T[late] < width**2, images.sum(axis=1), modes)
+    return value
 
 
 def brownian_survival(b, T, lower=None):

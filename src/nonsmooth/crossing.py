@@ -33,7 +33,7 @@ from nonsmooth.trajectories import (
     step_bias,
     variance_of_fine,
 )
-from nonsmooth.variance import asymptotic_variance, stationary_mean
+from nonsmooth.variance import limit_variance, stationary_mean
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -320,11 +320,7 @@ def _monte_carlo(
 def _asymptotic(scene, threshold, horizons, p, seed, threads):
     """W_star(b / gamma, T), which does not depend on p."""
     mean, uncertainty = stationary_mean(scene, seed, threads)
-    # beyond two variables a percent, enough for W_star, is sampled faster than solved
-    accuracy, way = {1: (None, "deterministic"), 2: (2e-3, "deterministic")}.get(
-        len(scene.state), (None, "monte_carlo")
-    )
-    gamma2 = asymptotic_variance(scene, accuracy, way, seed, threads)
+    gamma2 = limit_variance(scene, seed, threads)
     if abs(mean) > max(1e-8 * np.sqrt(gamma2.value), 5 * uncertainty):
         raise SceneError(
             f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
@@ -340,7 +336,7 @@ def _spectral(scene, threshold, horizons, p, seed, threads, tol=1e-7):
 
 
 def _corrected(scene, threshold, horizons, p, seed, threads, order=1):
-    value, error = corrected_crossing(scene, *threshold, horizons, p, order)
+    value, error = corrected_crossing(scene, *threshold, horizons, p, order, seed, threads)
     return {"probability": value, "probability_error": error}, {}
 
 

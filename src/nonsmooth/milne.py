@@ -13,12 +13,14 @@ import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
-from nonsmooth.ordinates import ordinates
+from nonsmooth.half_space import walls
+from nonsmooth.ordinates import UNHURRIED, ordinates
+from nonsmooth.overshoot import sampled_length
 from nonsmooth.poisson import EVEN, ODD
 from nonsmooth.spectral import applies
 
+_EXACT = 1e-8
 _DEGREES = (7, 9, 11, 13, 15, 17, 20)
-_UNHURRIED = 1e3  # a time beyond which the grid no longer depends on it, in units of 1 / C_b
 
 
 @dataclass(frozen=True)
@@ -47,20 +49,24 @@ class Expansion:
     start: float
 
 
-def extrapolation_length(scene, tol=1e-8):
+def extrapolation_length(scene, tol=None, seed=0, threads=None):
     """Distance kappa by which the threshold of the Brownian limit lies beyond the scene's.
 
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and odd g: kappa is then the same at both thresholds.
-    tol : float
-        Absolute error wanted, "1".
+        With the state y, white noise, and E g = 0, or any other with odd g, by Monte Carlo.
+    tol : float, optional
+        Absolute error wanted, "1"; 1e-8, or by Monte Carlo a tenth of kappa, unless given.
+    seed, threads
+        Of Monte Carlo: int or tuple; all cores unless given.
 
     Returns
     -------
-    Estimate
-        The error is the difference of two polynomial degrees.
+    Estimate or (Estimate, Estimate)
+        For odd g one kappa, the same at both thresholds; otherwise those of the lower and of the
+        upper threshold. The error is the difference of two polynomial degrees; of Monte Carlo, see
+        `overshoot.sampled_length`.
 
     Raises
     ------
@@ -69,20 +75,30 @@ def extrapolation_length(scene, tol=1e-8):
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
+    if not applies(scene):
+        return sampled_length(scene, tol, seed, threads)
+    tol = _EXACT if tol is None else tol
     began = time.perf_counter()
+    if not scene.is_odd():
+        constants, errors = walls(scene, tol)
+        seconds = time.perf_counter() - began
+        return tuple(
+            Estimate(getattr(constants, side), getattr(errors, side), "discrete ordinates", seconds)
+            for side in ("lower", "upper")
+        )
     constants, errors = expansion(scene, tol)
     return Estimate(
         constants.length, errors.length, "discrete ordinates", time.perf_counter() - began
     )
 
 
-def expansion(scene, tol=1e-8):
+def expansion(scene, tol=_EXACT):
     """Compute the constants of the corrected asymptotic formula.
 
     Parameters
     ----------
     scene, tol
-        As for `extrapolation_length`; `tol` is the absolute error wanted of all constants.
+        The state y, white noise and odd g; absolute error wanted of all constants.
 
     Returns
     -------
@@ -95,8 +111,8 @@ def expansion(scene, tol=1e-8):
     """
     if not (applies(scene) and scene.is_odd()):
         raise SceneError(
-            f"the extrapolation length is computed for the state (y), white noise and odd g, not "
-            f"for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
+            f"the constants of second order are computed for the state (y), white noise and odd g, "
+            f"not for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
             f"{scene.observable!r}; choose such a scene"
         )
     values = _expansion(scene, _DEGREES[0])
@@ -119,7 +135,7 @@ def _expansion(scene, degree):
     Cholesky factors of the stiffness matrices they are the singular vectors of one matrix, and
     1/mu its singular values.
     """
-    grid = ordinates(scene, degree, _UNHURRIED / scene.damping)
+    grid = ordinates(scene, degree, UNHURRIED / scene.damping)
     inner = slice(1, None)  # without the origin
     kept = np.flatnonzero(grid.g[inner])
     g, weights = grid.g[inner], grid.masses[inner]

@@ -15,6 +15,7 @@ from nonsmooth.expressions import vectorised
 from nonsmooth.poisson import EVEN, ODD
 from nonsmooth.spectral import potential
 
+UNHURRIED = 1e3  # a time beyond which the grid no longer depends on it, in units of 1 / C_b
 _DEEPEST = 40.0  # the grid ends where the density has fallen by exp(-40)
 _STEEPEST = 12.0  # logarithm of the ratio of the densities at the ends of an element
 _GRADING = 3.0

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nonsmooth.errors import ToleranceError
 from nonsmooth.poisson import EVEN, ODD
 
 _ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
+_INSTANT = 1e-3  # lengths over which a mode decays at once, relative to the longest
 
 
 @dataclass(frozen=True)
@@ -82,21 +82,21 @@ def _eigen(matrix, balance):
 def _of_all(grid, resolvent, balance):
     moving = grid.moving
     inverses, vectors = _eigen(resolvent[moving], balance)
+    up = grid.g[moving] > 0
+    order = np.argsort(-inverses.real)
+    upper, lower = np.split(order, [np.count_nonzero(up)])
+    # as many modes decay from each wall as nodes leave there, as long as Re z > 0; beyond, the slow
+    # pair waves, and on a grid a few that decay at once may stray to the other side
     rates = 1 / inverses
     start = grid.start[EVEN] @ (rates * (resolvent @ vectors))
     vectors = np.sqrt(grid.masses[moving])[:, None] * vectors
-    up, outward = grid.g[moving] > 0, rates.real > 0
-    if np.count_nonzero(up) != np.count_nonzero(outward):
-        raise ToleranceError(
-            "the modes of the transport equation do not separate into those of the two walls; "
-            "loosen tol or use Monte Carlo"
-        )
-    return (
-        Modes(rates[outward], vectors[up][:, outward], vectors[~up][:, outward], start[outward]),
-        Modes(
-            -rates[~outward], vectors[~up][:, ~outward], vectors[up][:, ~outward], start[~outward]
-        ),
-    )
+    instant = np.abs(inverses) < _INSTANT * np.max(np.abs(inverses))
+
+    def decaying(chosen, rates, leaves):
+        away = np.where(instant & (rates.real < 0), np.abs(rates), rates)[chosen]
+        return Modes(away, vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen])
+
+    return decaying(upper, rates, up), decaying(lower, -rates, ~up)
 
 
 def first_passage(grid, z, lower, upper):

@@ -88,6 +88,26 @@ def _deterministic(scene, tol):
     return *quadrature.asymptotic_variance(scene, tol), "quadrature"
 
 
+def limit_variance(scene, seed=0, threads=None):
+    """gamma^2 as accurately as formulas for crossing probabilities need it.
+
+    Parameters
+    ----------
+    scene : Scene
+    seed, threads
+        Of Monte Carlo.
+
+    Returns
+    -------
+    Estimate
+    """
+    # beyond two variables a percent, enough for W_star, is sampled faster than solved
+    accuracy, way = {1: (None, "deterministic"), 2: (2e-3, "deterministic")}.get(
+        len(scene.state), (None, "monte_carlo")
+    )
+    return asymptotic_variance(scene, accuracy, way, seed, threads)
+
+
 def stationary_mean(scene, seed=0, threads=None):
     """Stationary mean of g and its error: exact by symmetry or quadrature, else by Monte Carlo.
 

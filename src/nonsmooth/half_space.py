@@ -1,0 +1,130 @@
+"""The Milne problem at the two walls of a scene with the state y, for a g without symmetry.
+
+At the upper wall A q + g d_x q = 0 for x < 0, q = 0 at x = 0 where g > 0, and q ~ kappa - x - u as
+x -> -inf, u the Poisson solution of g; at the lower, its mirror image.
+"""
+
+from dataclasses import astuple, dataclass
+
+import numpy as np
+import scipy.linalg
+
+from nonsmooth import quadrature
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.ordinates import UNHURRIED, ordinates
+from nonsmooth.poisson import EVEN
+
+_DEGREES = (7, 9, 11, 13, 15, 17, 20)
+_CENTRED = 1e-9  # largest mean of g, relative to its standard deviation
+
+
+@dataclass(frozen=True)
+class Walls:
+    """Constants of the expansion to the order p^(-1/2), of a self-adjoint generator.
+
+    Attributes
+    ----------
+    diffusion : float
+        D = gamma^2 / 2.
+    lower, upper : float
+        kappa of either wall.
+    skewness : float
+        C = E[g u^2]; the third cumulant of int_0^t g grows like 6 C t.
+    poisson : float
+        u at the start.
+    """
+
+    diffusion: float
+    lower: float
+    upper: float
+    skewness: float
+    poisson: float
+
+
+def walls(scene, tol=1e-8):
+    """Compute the constants of both walls.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the state y, white noise, and E g = 0; g not odd, whose grid would be halved.
+    tol : float
+        Absolute error wanted of all constants.
+
+    Returns
+    -------
+    constants, errors : Walls
+        The errors are the differences of two polynomial degrees.
+
+    Raises
+    ------
+    SceneError
+        If the stationary mean of g is not 0.
+    ToleranceError
+        If `tol` is not met; the message has the best values and their error.
+    """
+    mean = quadrature.mean(scene)[0]
+    values = _walls(scene, _DEGREES[0], mean)
+    for degree in _DEGREES[1:]:
+        previous, values = values, _walls(scene, degree, mean)
+        errors = np.abs(np.subtract(astuple(values), astuple(previous)))
+        if errors.max() <= tol:
+            return values, Walls(*(float(error) for error in errors))
+    raise ToleranceError(
+        f"kappa = {values.lower:.10g}, {values.upper:.10g} and the other constants have errors up "
+        f"to {errors.max():.1e}, above tol = {tol:g}; loosen tol"
+    )
+
+
+def _walls(scene, degree, mean):
+    """Solve by the modes that decay from each wall; 1 and x + u are apart.
+
+    Modes (a + psi) exp(mu x), psi = 0 at one node, satisfy K psi = mu M g (a + psi) and carry no
+    flux, E[g psi] = 0. With the Cholesky factor of K they are eigenvectors of a symmetric matrix on
+    the complement of the flux, 1/mu its eigenvalues, and its row along the flux is a.
+    """
+    grid = ordinates(scene, degree, UNHURRIED / scene.damping)
+    spread = np.sqrt(grid.masses @ grid.g**2)
+    if abs(mean) > _CENTRED * spread:
+        raise SceneError(
+            f"the extrapolation length needs E g = 0, but g = {scene.observable!r} has the mean "
+            f"{mean:.10g}; subtract it from g"
+        )
+    rest = np.delete(np.arange(len(grid.g)), np.argmax(grid.masses))
+    # what the quadrature leaves of the mean
+    g = grid.g - np.where(grid.g == 0, 0.0, grid.masses @ grid.g)
+    weights = grid.masses[rest] * g[rest]
+    factor = scipy.linalg.cholesky(grid.stiffness[EVEN][np.ix_(rest, rest)], lower=True)
+
+    def forward(values):
+        return scipy.linalg.solve_triangular(factor, values, lower=True)
+
+    def spread_out(values):
+        """Functions on the whole grid, 0 at the node left out."""
+        found = np.zeros((len(grid.g), *values.shape[1:]))
+        found[rest] = scipy.linalg.solve_triangular(factor, values, lower=True, trans="T")
+        return found
+
+    flux = forward(weights)
+    diffusion = flux @ flux
+    coupling = forward(forward(np.diag(weights)).T)
+    complement = scipy.linalg.qr(flux[:, None])[0][:, 1:]
+    inverses, vectors = np.linalg.eigh(complement.T @ coupling @ complement)
+    vectors = complement @ vectors
+    modes = spread_out(vectors) - (flux @ coupling @ vectors) / diffusion
+    u = spread_out(flux)
+    u = u - grid.masses @ u
+    lengths = []
+    for side in (-1, 1):
+        leaving = np.flatnonzero(side * g > 0)
+        decaying = np.argsort(-side * inverses)[: len(leaving) - 1]
+        scale = np.sqrt(grid.masses[leaving])
+        matrix = np.column_stack([np.ones(len(leaving)), modes[np.ix_(leaving, decaying)]])
+        solution = np.linalg.solve(scale[:, None] * matrix, scale * side * u[leaving])
+        lengths.append(float(solution[0]))
+    return Walls(
+        float(diffusion),
+        *lengths,
+        float(grid.masses @ (g * u**2)),
+        float(grid.start[EVEN] @ u),
+    )
