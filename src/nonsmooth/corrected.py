@@ -12,7 +12,7 @@ import numpy as np
 
 from nonsmooth.brownian import brownian_crossing
 from nonsmooth.errors import SceneError
-from nonsmooth.milne import expansion
+from nonsmooth.milne import expansion, leading
 
 _TERMS = np.arange(4000)
 
@@ -23,7 +23,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order):
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and odd g.
+        With odd g and drift; one state variable and white noise or, for order 1, two and finite n.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite, "1".
     horizons : numpy.ndarray, shape (k,)
@@ -48,7 +48,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order):
         raise SceneError(
             "the corrected formula of order 2 needs the same threshold on both sides; use order=1"
         )
-    constants, errors = expansion(scene)
+    constants, errors = leading(scene) if order == 1 else expansion(scene)
     formula = _first if order == 1 else _second
     value = formula(constants, lower, upper, horizons, p)
     error = np.full(np.shape(value), 1e-15)

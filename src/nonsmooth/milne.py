@@ -11,6 +11,7 @@ from dataclasses import astuple, dataclass
 import numpy as np
 import scipy.linalg
 
+from nonsmooth import milne_plane
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.ordinates import ordinates
@@ -47,20 +48,21 @@ class Expansion:
     start: float
 
 
-def extrapolation_length(scene, tol=1e-8):
+def extrapolation_length(scene, tol=None):
     """Distance kappa by which the threshold of the Brownian limit lies beyond the scene's.
 
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and odd g: kappa is then the same at both thresholds.
-    tol : float
-        Absolute error wanted, "1".
+        With one state variable and white noise, or with two and finite n; with odd g and drift:
+        kappa is then the same at both thresholds.
+    tol : float, optional
+        Absolute error wanted, "1"; unless given, 1e-8 for one variable and 1e-3 for two.
 
     Returns
     -------
     Estimate
-        The error is the difference of two polynomial degrees.
+        The error is the difference of two polynomial degrees, or of two tensor grids.
 
     Raises
     ------
@@ -70,14 +72,44 @@ def extrapolation_length(scene, tol=1e-8):
         If `tol` is not met; the message has the best value and its error.
     """
     began = time.perf_counter()
-    constants, errors = expansion(scene, tol)
+    constants, errors = leading(scene, tol)
     return Estimate(
         constants.length, errors.length, "discrete ordinates", time.perf_counter() - began
     )
 
 
+def leading(scene, tol=None):
+    """Compute the constants of the corrected formula of order 1: D, kappa and u at the start.
+
+    Parameters
+    ----------
+    scene, tol
+        As for `extrapolation_length`.
+
+    Returns
+    -------
+    constants, errors : Expansion or milne_plane.Leading
+
+    Raises
+    ------
+    SceneError, ToleranceError
+        As `extrapolation_length`.
+    """
+    given = {} if tol is None else {"tol": tol}
+    if milne_plane.applies(scene):
+        return milne_plane.leading(scene, **given)
+    if not (applies(scene) and scene.is_odd()):
+        raise SceneError(
+            f"the extrapolation length is computed for odd g and one state variable with white "
+            f"noise or two with finite n, not for ({', '.join(scene.state)}) with "
+            f"{scene.noise.title}, n = {scene.n:g} and g = {scene.observable!r}; choose such a "
+            "scene, or crossing_probability with method='monte_carlo'"
+        )
+    return expansion(scene, **given)
+
+
 def expansion(scene, tol=1e-8):
-    """Compute the constants of the corrected asymptotic formula.
+    """Compute the constants of the corrected formula of order 2, for one state variable.
 
     Parameters
     ----------
@@ -95,9 +127,9 @@ def expansion(scene, tol=1e-8):
     """
     if not (applies(scene) and scene.is_odd()):
         raise SceneError(
-            f"the extrapolation length is computed for the state (y), white noise and odd g, not "
-            f"for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
-            f"{scene.observable!r}; choose such a scene"
+            f"the corrected formula of order 2 needs the state (y), white noise and odd g, not "
+            f"({', '.join(scene.state)}) with {scene.noise.title} and g = {scene.observable!r}; "
+            "choose such a scene, or method='monte_carlo'"
         )
     values = _expansion(scene, _DEGREES[0])
     for degree in _DEGREES[1:]:
