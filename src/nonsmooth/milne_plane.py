@@ -4,7 +4,7 @@ Discretised on half of a tensor grid, functions being odd or even: drift and g a
 """
 
 import math
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
@@ -18,6 +18,7 @@ _DEPTH = 16.0  # the density outside the box is of the order exp(-16) of its max
 _LARGEST = 3000  # nodes with g != 0: a minute
 _STANDSTILL = 1e-3  # correlation of g and its Poisson solution, below which gamma^2 may be 0
 _GROWTH = 1e-5  # relative error wanted of gamma^2
+_SHARE = 8.0  # the last change of a variable is at most this part of the tolerance
 _LEAST = 1e-10  # of the scale of a node, relative to the largest
 
 
@@ -53,8 +54,8 @@ def leading(scene, tol=1e-3):
     Returns
     -------
     constants, errors : Leading
-        What each variable's last refinement has changed is added up for the error, and the changes
-        are added to the value.
+        Each variable is refined alone, and the changes are added up. The error is twice the last
+        change of each, and what the first refinements change together beyond that sum.
 
     Raises
     ------
@@ -63,31 +64,46 @@ def leading(scene, tol=1e-3):
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
-    grid, found = fitted(scene, _DEPTH, 0), None
+    grid, best = fitted(scene, _DEPTH, 0), math.nan
     while True:
-        base = _milne(scene, grid)
-        if base is None:
-            break
-        changes = []
-        for symbol in grid.levels:
-            finer = _milne(scene, grid.raised(symbol))
-            if finer is None:
-                break
-            changes.append(finer - base)
-        if len(changes) < len(grid.levels):
-            break
-        values, errors = base + sum(changes), sum(map(np.abs, changes))
-        found = values[0], errors[0]
+        values, errors = _refined_from(scene, grid, tol, best)
         if errors.max() <= tol:
-            gamma2, uncertainty = growth_to(scene, _GROWTH)
-            return Leading(gamma2 / 2, *map(float, values)), Leading(
-                uncertainty / 2, *map(float, errors)
-            )
-        grid = raised(grid)
-    reached = f"kappa = {found[0]:.7g} has the error {found[1]:.1e}" if found else "kappa is not found"
-    raise ToleranceError(
-        f"{reached} on the largest grid, above tol = {tol:g}; loosen tol"
+            break
+        grid, best = raised(grid), values[0]
+    gamma2, uncertainty = growth_to(scene, _GROWTH)
+    return (
+        Leading(gamma2 / 2, *map(float, values)),
+        Leading(uncertainty / 2, *map(float, errors)),
     )
+
+
+def _refined_from(scene, coarse, tol, best):
+    """Refine each variable alone until it has settled; returns what `_milne` does and the error."""
+    first, second = coarse.levels
+    base = _solved(scene, coarse, best)
+    values, errors, once = base, np.zeros(2), {}
+    for symbol in coarse.levels:
+        grid, last, change = coarse, base, np.full(2, np.inf)
+        while np.max(change) > tol / _SHARE:
+            grid, previous = grid.raised(symbol), last
+            last = _solved(scene, grid, values[0])
+            once.setdefault(symbol, last)
+            change = np.abs(last - previous)
+        values = values + last - base
+        errors = errors + 2 * change
+    # what the variables change together beyond the sum of what they change alone
+    both = _solved(scene, coarse.raised(first).raised(second), values[0])
+    together = both - once[first] - once[second] + base
+    return values + together, errors + np.abs(together)
+
+
+def _solved(scene, grid, best):
+    values = _milne(scene, grid)
+    if values is None:
+        raise ToleranceError(
+            f"kappa = {best:.7g} does not settle on grids of {_LARGEST} nodes; loosen tol"
+        )
+    return values
 
 
 def _milne(scene, grid):
