@@ -94,6 +94,47 @@ class TestMilne:
             ns.crossing_probability(
                 ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
             )
+        with pytest.raises(ns.NonsmoothError, match="no extrapolation length"):
+            ns.extrapolation_length(ns.Scene("obstacle", potential="x**2/2"))
+
+
+class TestMilneOfTwoVariables:
+    """kappa where the generator is not self-adjoint."""
+
+    def test_ornstein_uhlenbeck(self):
+        """A spring too weak to matter: the closed form of one variable, by the solver of two."""
+        found = ns.extrapolation_length(ns.Scene("elasto_plastic", potential="1e-9*x**2"))
+        exact = -float(mpmath.zeta(0.5)) / np.sqrt(2)
+        # the spring adds of the order of its stiffness
+        assert abs(found.value - exact) <= found.error + 1e-8
+        assert found.error <= 1e-3
+
+    def test_yielding_displacement(self):
+        """The displacement crosses b when the plastic strain crosses b - 1, for it yields at x = 1.
+
+        Exactly so at n = inf; at a finite n, x passes 1 by y/n, with y of order 1.
+        """
+        lengths = [
+            ns.extrapolation_length(
+                ns.Scene("elasto_plastic", potential="x**2/2", n=1e4, observable=g), tol=1e-2
+            )
+            for g in ("y", "plastic_strain_rate")
+        ]
+        total, plastic = lengths
+        assert abs(total.value - (plastic.value - 1)) <= total.error + plastic.error + 1e-4
+
+    def test_corrected_formula(self):
+        """Against Monte Carlo, where the plain formula is off by 0.1; 4.5 sigma, and O(1/p)."""
+        scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
+        problem = scene, 0.6, [2.0], 100
+        found = ns.crossing_probability(*problem, method="corrected")
+        sampled = ns.crossing_probability(*problem, step=0.1, paths=4000, seed=1)
+        sigma = np.hypot(sampled.probability_error, sampled.step_bias_error)
+        difference = found.probability - sampled.probability + sampled.step_bias
+        order = (0.42 / 0.6) ** 2 / 100  # (kappa / b)^2 / p
+        assert np.all(np.abs(difference) <= 4.5 * sigma + order)
+        with pytest.raises(ns.NonsmoothError, match="order 1, from the origin"):
+            ns.crossing_probability(*problem, method="corrected", order=2)
 
 
 def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):

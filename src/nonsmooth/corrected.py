@@ -15,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from nonsmooth import milne_plane
 from nonsmooth.brownian import brownian_crossing, brownian_exit
 from nonsmooth.errors import SceneError
 from nonsmooth.half_space import Walls, walls
@@ -33,8 +34,8 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, seed=0, threads=
     Parameters
     ----------
     scene : Scene
-        With the state y and white noise; odd g for order 2. Any other with odd g and the start at
-        the origin, for order 1.
+        With the state y and white noise; odd g for order 2. For order 1 also two variables with
+        finite n and odd g, or any other with odd g and the start at the origin.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite, "1".
     horizons : numpy.ndarray, shape (k,)
@@ -62,7 +63,9 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, seed=0, threads=
         raise SceneError(
             "the corrected formula of order 2 needs the same threshold on both sides; use order=1"
         )
-    if not applies(scene):
+    if order == 1 and milne_plane.applies(scene):
+        (constants, errors), formula = milne_plane.leading(scene), _first
+    elif not applies(scene):
         (constants, errors), formula = _sampled(scene, order, seed, threads), _skewed
     elif scene.is_odd():
         (constants, errors), formula = expansion(scene), _first if order == 1 else _second

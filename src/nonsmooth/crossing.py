@@ -212,7 +212,8 @@ def crossing_probability(
         ``"spectral"`` is deterministic, for one state variable and white noise: it is taken there
         unless a parameter of another method is given, and ``"monte_carlo"`` elsewhere.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
-        ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`.
+        ``"corrected"`` has an error of the order 1/p, for one or two state variables, or
+        p^(-3/2), for one; see `corrected`.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (two standard errors are at most `tol`) and on the time

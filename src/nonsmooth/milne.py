@@ -11,6 +11,7 @@ from dataclasses import astuple, dataclass
 import numpy as np
 import scipy.linalg
 
+from nonsmooth import milne_plane
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.half_space import walls
@@ -55,9 +56,11 @@ def extrapolation_length(scene, tol=None, seed=0, threads=None):
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and E g = 0, or any other with odd g, by Monte Carlo.
+        With the state y, white noise, and E g = 0; with two variables, finite n and odd g; or any
+        other with odd g, by Monte Carlo.
     tol : float, optional
-        Absolute error wanted, "1"; 1e-8, or by Monte Carlo a tenth of kappa, unless given.
+        Absolute error wanted, "1"; 1e-8, 1e-3 for two variables, or by Monte Carlo a tenth of
+        kappa, unless given.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 
@@ -65,8 +68,8 @@ def extrapolation_length(scene, tol=None, seed=0, threads=None):
     -------
     Estimate or (Estimate, Estimate)
         For odd g one kappa, the same at both thresholds; otherwise those of the lower and of the
-        upper threshold. The error is the difference of two polynomial degrees; of Monte Carlo, see
-        `overshoot.sampled_length`.
+        upper threshold. The error is the difference of two polynomial degrees, or of two tensor
+        grids; of Monte Carlo, see `overshoot.sampled_length`.
 
     Raises
     ------
@@ -75,10 +78,14 @@ def extrapolation_length(scene, tol=None, seed=0, threads=None):
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
+    began = time.perf_counter()
+    if milne_plane.applies(scene):
+        constants, errors = milne_plane.leading(scene, **({} if tol is None else {"tol": tol}))
+        seconds = time.perf_counter() - began
+        return Estimate(constants.length, errors.length, "tensor grids", seconds)
     if not applies(scene):
         return sampled_length(scene, tol, seed, threads)
     tol = _EXACT if tol is None else tol
-    began = time.perf_counter()
     if not scene.is_odd():
         constants, errors = walls(scene, tol)
         seconds = time.perf_counter() - began
