@@ -211,7 +211,8 @@ def crossing_probability(
     method : {"monte_carlo", "spectral", "asymptotic", "corrected"}
         ``"spectral"`` is deterministic, for one state variable and white noise.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
-        ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`.
+        ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`; beyond the
+        state y with white noise it needs odd g, and the constants are sampled.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (two standard errors are at most `tol`) and on the time

@@ -41,7 +41,7 @@ def sampled_length(scene, tol=None, seed=0, threads=None):
     Estimate
         The error is made of the standard error and of what kappa changes if the threshold is
         halved, the time after the passage is halved, or paths are looked at every other step only;
-        the bias of the steps themselves, below a hundredth of kappa, is not measured.
+        the bias of the steps themselves is not measured.
 
     Raises
     ------
