@@ -146,21 +146,25 @@ class TestSampledLength:
     """kappa by Monte Carlo."""
 
     def test_of_dry_friction(self):
-        """Within the stated error, which holds the standard error once: seeds are fixed."""
+        """Within the stated error, two standard errors and more; the seed is fixed."""
         found = sampled_length(FRICTION, seed=1)
         assert abs(found.value - 0.2911259630) < found.error
-        assert found.error < 0.1 * found.value
+        assert found.error < 0.2 * found.value
 
     def test_formula_for_colored_noise(self):
-        """Against Monte Carlo at p = 100; the formula's own error is below 0.01 there."""
+        """Against Monte Carlo, false alarm 1e-5.
+
+        e kappa / b = 0.17 is that of white noise with b = 0.6 and p = 8, where the formula is off
+        by less than 0.01.
+        """
         scene = ns.Scene("friction", "langevin")
-        formula = ns.crossing_probability(scene, 0.6, [2.0], 100, method="corrected", seed=1)
-        sample = ns.crossing_probability(scene, 0.6, [2.0], 100, paths=4_000, step=0.05, seed=2)
-        limit = ns.crossing_probability(scene, 0.6, [2.0], 100, method="asymptotic")
+        formula = ns.crossing_probability(scene, 0.2, [2.0], 100, method="corrected", seed=1)
+        sample = ns.crossing_probability(scene, 0.2, [2.0], 100, paths=3_000, step=0.05, seed=2)
+        limit = ns.crossing_probability(scene, 0.2, [2.0], 100, method="asymptotic")
         gap, plain = (abs(float((f - sample).probability[0])) for f in (formula, limit))
-        allowed = formula.probability_error + 4.5 * sample.probability_error + 0.01
-        assert gap < float(allowed[0])
-        assert gap < plain
+        assert gap < 4.5 * float(sample.probability_error[0]) + 0.01
+        assert 0 < float(formula.probability_error[0]) < 0.05
+        assert gap < plain / 2
 
 
 class TestSpectral:

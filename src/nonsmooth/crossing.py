@@ -212,8 +212,9 @@ def crossing_probability(
         ``"spectral"`` is deterministic, for one state variable and white noise: it is taken there
         unless a parameter of another method is given, and ``"monte_carlo"`` elsewhere.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
-        ``"corrected"`` has an error of the order 1/p, for one or two state variables, or
-        p^(-3/2), for one; see `corrected`.
+        ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`; beyond the
+        state y with white noise it needs odd g, order 1 and, with more than two variables,
+        constants that are sampled.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (two standard errors are at most `tol`) and on the time

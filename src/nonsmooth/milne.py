@@ -59,7 +59,7 @@ def extrapolation_length(scene, tol=None, seed=0, threads=None):
         With the state y, white noise, and E g = 0; with two variables, finite n and odd g; or any
         other with odd g, by Monte Carlo.
     tol : float, optional
-        Absolute error wanted, "1"; 1e-8, 1e-3 for two variables, or by Monte Carlo a tenth of
+        Absolute error wanted, "1"; 1e-8, 1e-3 for two variables, or by Monte Carlo a fifth of
         kappa, unless given.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.

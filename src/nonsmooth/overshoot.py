@@ -21,7 +21,7 @@ _LAG = 4.0  # time after a passage, in units of the larger of 1 and 1 / C_b, at 
 _CYCLES = 75  # duration of a path over that time
 _FAR = 2.0  # threshold over the standard deviation of what int g gains in that time
 _ATTEMPTS = 3
-_SHARE = 0.1  # error over kappa, unless tol is given
+_SHARE = 0.2  # error over kappa, unless tol is given
 
 
 def sampled_length(scene, tol=None, seed=0, threads=None):
@@ -32,16 +32,16 @@ def sampled_length(scene, tol=None, seed=0, threads=None):
     scene : Scene
         With odd g.
     tol : float, optional
-        Absolute error wanted, "1"; a tenth of kappa unless given.
+        Absolute error wanted, "1"; a fifth of kappa unless given.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 
     Returns
     -------
     Estimate
-        The error is made of the standard error and of what kappa changes if the threshold is
+        The error is two standard errors and what kappa changes if the threshold is
         halved, the time after the passage is halved, or paths are looked at every other step only;
-        the bias of the steps themselves, below a hundredth of kappa, is not measured.
+        the bias of the steps themselves is not measured.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def _estimate(scene, lag, paths, seed, threads):
         _gain(integral, far, after // 2)[0] - value,
         _gain(integral[::2], far, after // 2)[0] - value,
     ]
-    return value, float(np.linalg.norm([spread, *changes]))
+    return value, float(2 * spread + np.linalg.norm(changes))
 
 
 def _gain(integral, threshold, after):
