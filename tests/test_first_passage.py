@@ -151,21 +151,6 @@ class TestSampledLength:
         assert abs(found.value - 0.2911259630) < found.error
         assert found.error < 0.2 * found.value
 
-    def test_formula_for_colored_noise(self):
-        """Against Monte Carlo, false alarm 1e-5.
-
-        e kappa / b = 0.17 is that of white noise with b = 0.6 and p = 8, where the formula is off
-        by less than 0.01.
-        """
-        scene = ns.Scene("friction", "langevin")
-        formula = ns.crossing_probability(scene, 0.2, [2.0], 100, method="corrected", seed=1)
-        sample = ns.crossing_probability(scene, 0.2, [2.0], 100, paths=3_000, step=0.05, seed=2)
-        limit = ns.crossing_probability(scene, 0.2, [2.0], 100, method="asymptotic")
-        gap, plain = (abs(float((f - sample).probability[0])) for f in (formula, limit))
-        assert gap < 4.5 * float(sample.probability_error[0]) + 0.01
-        assert 0 < float(formula.probability_error[0]) < 0.05
-        assert gap < plain / 2
-
 
 class TestSpectral:
     """First passage against published values, Monte Carlo, and itself in the tails."""
