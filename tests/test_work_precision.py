@@ -176,7 +176,7 @@ class TestScripts:
             0.05,
             1_000,
             0.1,
-            {"half_width": 10, "nodes": 101, "time_step": 0.5},
+            {"half_width": 10, "nodes": 401, "time_step": 0.5},
             2,
         )
         seconds = data["seconds"].where(data["panel"] == "samples", drop=True)
