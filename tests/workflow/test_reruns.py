@@ -149,7 +149,7 @@ def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
     )
     jobs = finished.jobs()
     assert {name for name in jobs if name.startswith("sweep")} == {"sweep_crossing"}
-    assert jobs["sweep_crossing"] == 4
+    assert jobs["sweep_crossing"] == 2
 
 
 def test_a_new_limit_of_the_deformation_is_simulated_alone(finished):
@@ -169,6 +169,6 @@ def test_gamma_does_not_rerun_the_samples_of_the_limit_theorem(finished):
     with open(finished.folder / "src/nonsmooth/growth.py", "a") as file:
         file.write("# changed\n")
     jobs = finished.jobs()
-    assert jobs["sweep_variance"] == 4
+    assert jobs["sweep_variance"] == 2
     assert jobs["check_limit_theorem"] == 1
     assert "limit_theorem_samples" not in jobs
