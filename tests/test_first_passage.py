@@ -218,6 +218,13 @@ class TestSpectral:
         assert np.all(np.diff(found.probability) > 0)
         assert found.probability_error[1] < 1e-3 * found.probability[1] < 1e-10
 
+    def test_a_crossing_that_is_out_of_reach(self):
+        """The transform is below rounding on all of the axis that matters."""
+        found = exact(10.0, [0.005, 0.01], 0.01)
+        assert np.all(found.probability == 0)
+        assert np.all(found.probability_error <= 1e-13)
+        assert np.all(found.survival == 1)
+
     @pytest.mark.parametrize(("threshold", "p"), [(0.05, 1), (0.6, 0.01), (3.0, 30)])
     def test_a_curve_over_four_decades(self, threshold, p):
         """A distribution that rises from nothing, within the error asked for."""

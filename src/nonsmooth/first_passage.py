@@ -148,6 +148,9 @@ def _saddles(scene, lower, upper, times):
         if value < _ROUNDED:
             break
         log_F.append(np.log(value))
+    if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
+        nothing = np.zeros(len(times))
+        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED))
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
