@@ -6,6 +6,7 @@ from scipy.special import ndtri
 from nonsmooth import artifact
 from nonsmooth.errors import CheckError
 from nonsmooth.jobs import produce
+from nonsmooth.tables import sorted_by
 
 FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 
@@ -35,9 +36,8 @@ def compare(monte_carlo, asymptotic, growth):
     CheckError
         If the bias is not below the standard error, or the two measurements contradict.
     """
+    monte_carlo = sorted_by("p", monte_carlo)
     p = np.array([float(d["p"]) for d in monte_carlo])
-    order = np.argsort(p)
-    monte_carlo, p = [monte_carlo[i] for i in order], p[order]
     column = {
         name: np.array([float(d[name]) for d in monte_carlo])
         for name in ("bias", "bias_error", "slope")

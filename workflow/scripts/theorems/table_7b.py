@@ -5,6 +5,7 @@ import pandas as pd
 
 from nonsmooth.scene import Scene
 from nonsmooth.tables import typeset
+from nonsmooth.two_methods import symbol
 
 
 def ergodic(ergodicity, scenes):
@@ -28,8 +29,8 @@ def ergodic(ergodicity, scenes):
             {
                 "model": scene.model.replace("_", "-"),
                 "noise": scene.noise.kind,
-                "state": ", ".join(f"${_symbol(name)}$" for name in scene.state),
-                "$g$": f"${scene.observable}$",
+                "state": ", ".join(map(symbol, scene.state)),
+                "$g$": symbol(scene.observable),
                 "spectral gap": f"${_with_error(row.gap, row.gap_error)}$",
                 "decay on a box": f"${_with_error(row.rate, row.rate_error)}$",
                 "at infinity": f"${_with_error(row.far, row.far_error)}$",
@@ -37,10 +38,6 @@ def ergodic(ergodicity, scenes):
             }
         )
     return plain, pd.DataFrame(cells)
-
-
-def _symbol(name):
-    return name if len(name) == 1 else rf"\{name}"
 
 
 def _with_error(value, error):
