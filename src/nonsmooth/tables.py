@@ -78,6 +78,11 @@ def penalization(n):
     return r"$\infty$" if n == float("inf") else f"${n:g}$"
 
 
+def symbol(name):
+    """Spell a variable, or an observable that is one, as LaTeX mathematics."""
+    return f"${name}$" if len(name) == 1 else rf"$\{name}$"
+
+
 def sorted_by(name, datasets):
     """Return artifacts in the order of a scalar coordinate."""
     return sorted(datasets, key=lambda dataset: float(dataset[name]))

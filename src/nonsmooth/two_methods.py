@@ -56,10 +56,5 @@ def compared(name, scene, solved, sampled):
     return plain, cells
 
 
-def symbol(name):
-    """Spell a variable, or an observable that is one, as LaTeX mathematics."""
-    return f"${name}$" if len(name) == 1 else rf"$\{name}$"
-
-
 def _decimals(error):
     return max(2, int(np.ceil(-np.log10(error))))

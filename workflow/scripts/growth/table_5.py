@@ -3,8 +3,8 @@
 import pandas as pd
 
 from nonsmooth.scene import Scene
-from nonsmooth.tables import typeset
-from nonsmooth.two_methods import compared, symbol
+from nonsmooth.tables import symbol, typeset
+from nonsmooth.two_methods import compared
 
 
 def growth(solved, sampled, names, scenes):

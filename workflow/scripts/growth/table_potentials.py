@@ -4,8 +4,8 @@ import pandas as pd
 import sympy
 
 from nonsmooth.scene import by_formulas
-from nonsmooth.tables import typeset
-from nonsmooth.two_methods import compared, symbol
+from nonsmooth.tables import symbol, typeset
+from nonsmooth.two_methods import compared
 
 SAMPLED = {"gamma2": "monte_carlo", "gamma2_error": "monte_carlo_error"}
 DIGITS = 2  # of the correlation time

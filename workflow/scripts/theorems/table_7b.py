@@ -4,8 +4,7 @@ import numpy as np
 import pandas as pd
 
 from nonsmooth.scene import Scene
-from nonsmooth.tables import typeset
-from nonsmooth.two_methods import symbol
+from nonsmooth.tables import symbol, typeset
 
 
 def ergodic(ergodicity, scenes):
