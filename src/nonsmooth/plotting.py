@@ -48,6 +48,8 @@ def draw(plot, task):
     """
     with job(task.log[0]), mpl.rc_context(STYLE):
         figure = plot(**inputs(task), **dict(task.params.items()))
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")  # the layout is found once, for all files
         for path in map(Path, task.output):
             metadata = {"CreationDate": None} if path.suffix == ".pdf" else {"Software": None}
             with whole(path) as partial:
