@@ -19,8 +19,8 @@ does. X is to be small: it is multiplied by
 
 Z the sum of the sizes of its terms, b the threshold. This is 1 + O(e^4), and gives back order 1
 where pT is not long against the memory of the state, or where the layer at the threshold is as
-thick as the interval. At order 2 X is besides divided by 1 + Y/Z, Y the size of the terms of order
-e^3, which mostly oppose those of order e^2 (kappa_3 < 0).
+thick as the interval. At order 2 there is another factor exp(-Y/Z), Y the size of the terms of
+order e^3, which mostly oppose those of order e^2, for kappa_3 < 0.
 
 What the next order may change in X bounds the distance to the exact probability: at order 1 the
 size of X itself, at order 2 Y + Z^2, at order 3 Z^2; and always what was taken off by the factor.
@@ -53,8 +53,9 @@ _FADING, _LAYER = 2.0, 1.5  # of the factor that limits X
 # The doubt about X is a bound to the next order only; as measured on one-dimensional scenes it is
 # then up to 1.0 times too small.
 _SAFETY = 1.5
-_LONGEST = 1.0, 2.0  # doubts are limited to these, and to so many times log(1 + 2 e kappa / b)
+_LONGEST = 1.5, 2.0  # doubts are limited to these, and to so many times log(1 + 2 e kappa / b)
 _UNKNOWN = 2.0  # (h - S) and B/D over kappa^2, where these are not known
+_TINY = 1e-300  # against 0/0
 _DEEPEST = 300.0  # W below exp(-300) is not corrected
 _STEP = 1e-4  # relative, of difference quotients; their error is of the order of its square
 
@@ -156,12 +157,10 @@ def _evaluate(constants, lower, upper, horizons, p, order):
     layer = (max(first.lower, first.upper) + abs(first.poisson)) * scale / min(upper, -lower)
     slopes = _slopes(above, below, 2 * first.diffusion, horizons)
     if isinstance(c, Walls):
-        change, doubt = np.zeros(horizons.shape), _unknown(c, scale, slopes)
+        clocks = [(np.zeros(horizons.shape), _unknown(c, scale, slopes))]
     else:
-        change, doubt = _clock(c, scale, slopes, layer, order)
-    doubt = np.minimum(
-        _SAFETY * doubt + (2 * layer) ** 4, _LONGEST[0] + _LONGEST[1] * np.log1p(2 * layer)
-    )
+        clocks = _clocks(c, scale, slopes, layer)[:order]
+    longest = _LONGEST[0] + _LONGEST[1] * np.log1p(2 * layer)
 
     def crossed(times):
         if first.skewness == 0:
@@ -175,9 +174,17 @@ def _evaluate(constants, lower, upper, horizons, p, order):
             value += brownian_exit(-below, variance + shift * lower, -above)
         return np.clip(value, 0.0, 1.0)
 
-    value = crossed(horizons * np.exp(change))
-    later, earlier = (crossed(horizons * np.exp(change + sign * doubt)) for sign in (1, -1))
-    return value, np.maximum(np.abs(later - value), np.abs(value - earlier))
+    found = []
+    for change, doubt in clocks:
+        doubt = np.minimum(_SAFETY * doubt + layer**4, longest)
+        value, earlier, later = (
+            crossed(horizons * np.exp(change + sign * doubt)) for sign in (0, -1, 1)
+        )
+        distance = np.maximum(later - value, value - earlier)
+        if found:  # no farther than the order before
+            distance = np.minimum(distance, found[-1][1] + np.abs(value - found[-1][0]))
+        found.append((value, distance))
+    return found[-1]
 
 
 def _slopes(above, below, rate, times):
@@ -204,24 +211,25 @@ def _slopes(above, below, rate, times):
     )
 
 
-def _clock(constants, scale, slopes, layer, order):
-    """Return X and the doubt about it."""
+def _clocks(constants, scale, slopes, layer):
+    """Return X and the doubt about it for every order."""
     c, (times, late, outwards, right) = constants, slopes
     delay = scale**2 * (c.start - c.poisson**2 / 2 - c.corner) / (c.diffusion * times)
     spread = scale**2 * c.dispersion / c.diffusion**2 * late
-    third = c.third - c.poisson * c.start + c.poisson**3 / 3
-    terms = -(scale**3) / (c.diffusion * times) * np.array([c.stretch * outwards, -third * right])
-    second, size, next_size = delay + spread, np.abs(delay) + np.abs(spread), np.abs(terms).sum(0)
-    if order == 1:
-        return np.zeros(times.shape), size + next_size
+    jump = c.third - c.poisson * c.start + c.poisson**3 / 3
+    unit = scale**3 / (c.diffusion * times)
+    wall, start = -unit * c.stretch * outwards, unit * jump * right
+    size, next_size = np.abs(delay) + np.abs(spread), np.abs(wall) + np.abs(start)
     factor = np.exp(-_FADING * (size + next_size) - (_LAYER * layer) ** 4)
+    second, third = delay + spread, delay + spread + wall + start
+    at_two = factor * np.exp(-next_size / (size + _TINY)) * second
     own = scale**2 * c.length**2 / c.diffusion * (1 / times + np.abs(late))
     fourth = (own + size + next_size) * (size + next_size)
-    if order == 2:
-        change = factor * second * size / (size + next_size)
-        return change, next_size + np.abs(second - change) + fourth
-    full = second + terms.sum(0)
-    return factor * full, np.abs(full - factor * full) + fourth
+    return [
+        (np.zeros(times.shape), size + next_size),
+        (at_two, next_size + np.abs(second - at_two) + fourth),
+        (factor * third, np.abs(third - factor * third) + fourth),
+    ]
 
 
 def _unknown(constants, scale, slopes):
