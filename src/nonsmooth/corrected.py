@@ -56,7 +56,7 @@ _SAFETY = 1.5
 _LONGEST = 1.5, 2.0  # doubts are limited to these, and to so many times log(1 + 2 e kappa / b)
 _UNKNOWN = 2.0  # (h - S) and B/D over kappa^2, where these are not known
 _TINY = 1e-300  # against 0/0
-_DEEPEST = 300.0  # W below exp(-300) is not corrected
+_DEEPEST = 300.0  # no slopes are taken where W or 1 - W is below exp(-300)
 _STEP = 1e-4  # relative, of difference quotients; their error is of the order of its square
 
 
@@ -123,7 +123,7 @@ def _constants(scene, order, seed, threads):
         raise SceneError(
             f"the corrected formula of order {order} needs the state (y), white noise and odd g, "
             f"not ({', '.join(scene.state)}) with {scene.noise.title} and g = "
-            f"{scene.observable!r}; use order=1"
+            f"{scene.observable!r}; use order=1 or method='monte_carlo'"
         )
     if applies(scene):
         return walls(scene)
@@ -192,8 +192,10 @@ def _slopes(above, below, rate, times):
 
     In T, for moving both levels outwards, and for moving the start to the right.
     """
-    near = min(above, -below)
-    times = np.maximum(times, near**2 / (2 * rate * _DEEPEST))
+    near, width = min(above, -below), above - below
+    times = np.clip(
+        times, near**2 / (2 * rate * _DEEPEST), 2 * width**2 / (np.pi**2 * rate) * _DEEPEST
+    )
 
     def log_density(times, outwards=0.0, right=0.0):
         return np.log(
