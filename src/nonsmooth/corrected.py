@@ -22,8 +22,11 @@ where pT is not long against the memory of the state, or where the layer at the 
 thick as the interval. At order 2 there is another factor exp(-Y/Z), Y the size of the terms of
 order e^3, which mostly oppose those of order e^2, for kappa_3 < 0.
 
-What the next order may change in X bounds the distance to the exact probability: at order 1 the
-size of X itself, at order 2 Y + Z^2, at order 3 Z^2; and always what was taken off by the factor.
+The error is what W changes as the clock moves forth and back by what the next order may change in X:
+Z at order 1, Y + Z (Z + K) at order 2, Z (Z + K) at order 3, where K is Z with kappa^2 for h - S and
+B/D, and what the factors took off. Constants of order 2 that are not known are taken as 2 kappa^2.
+Not in the error are large excursions of a g that grows faster than the theorems allow, of which the
+scene warns: they make early crossings likelier than any of this.
 
 Without symmetry of g each threshold has its kappa, and the third cumulant of int g, 6 C t, enters
 at the order 1, too: f_s = D f_xx + e C f_xxx, whose solution is that of C = 0 with the times of
@@ -50,11 +53,9 @@ from nonsmooth.streams import labelled
 from nonsmooth.variance import limit_variance
 
 _FADING, _LAYER = 2.0, 1.5  # of the factor that limits X
-# The doubt about X is a bound to the next order only; as measured on one-dimensional scenes it is
-# then up to 1.0 times too small.
-_SAFETY = 1.5
-_LONGEST = 1.5, 2.0  # doubts are limited to these, and to so many times log(1 + 2 e kappa / b)
-_UNKNOWN = 2.0  # (h - S) and B/D over kappa^2, where these are not known
+_SAFETY = 1.5  # of the doubt about X; as measured on one-dimensional scenes, 1.2 would do
+_LONGEST = 1.5, 2.0  # the doubt is at most the first, and the second times log(1 + 2 e kappa / b)
+_UNKNOWN = 2.0  # h - S and B/D over kappa^2, where these are not known
 _TINY = 1e-300  # against 0/0
 _DEEPEST = 300.0  # no slopes are taken where W or 1 - W is below exp(-300)
 _STEP = 1e-4  # relative, of difference quotients; their error is of the order of its square
