@@ -22,9 +22,10 @@ where pT is not long against the memory of the state, or where the layer at the 
 thick as the interval. At order 2 there is another factor exp(-Y/Z), Y the size of the terms of
 order e^3, which mostly oppose those of order e^2, for kappa_3 < 0.
 
-The error is what W changes as the clock moves forth and back by what the next order may change in X:
-Z at order 1, Y + Z (Z + K) at order 2, Z (Z + K) at order 3, where K is Z with kappa^2 for h - S and
-B/D, and what the factors took off. Constants of order 2 that are not known are taken as 2 kappa^2.
+The error is what W changes as the clock moves forth and back by what the next order may change in
+X: Z at order 1, Y + Z (Z + K) at order 2, Z (Z + K) at order 3, where K is Z with kappa^2 for h - S
+and B/D, and what the factors took off. Constants of order 2 that are not known are taken as
+2 kappa^2.
 Not in the error are large excursions of a g that grows faster than the theorems allow, of which the
 scene warns: they make early crossings likelier than any of this.
 

@@ -9,12 +9,13 @@ import time
 
 import numpy as np
 
+from nonsmooth import schemes
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.panel import TOTAL_DELTA
 from nonsmooth.streams import labelled
 from nonsmooth.times import equal_steps
-from nonsmooth.trajectories import coarse_step, over_blocks
+from nonsmooth.trajectories import coarse_step, coupled_paths, over_blocks
 
 _PATHS = 2000  # at first; a multiple of the block size
 _LAG = 4.0  # time after a passage, in units of the larger of 1 and 1 / C_b, at first
@@ -22,6 +23,7 @@ _CYCLES = 75  # duration of a path over that time
 _FAR = 2.0  # threshold over the standard deviation of what int g gains in that time
 _ATTEMPTS = 3
 _SHARE = 0.2  # error over kappa, unless tol is given
+_PILOT_PATHS, _FEWER = 1000, 4  # paths of the halving: at least, and of how many those are one
 
 
 def sampled_length(scene, tol=None, seed=0, threads=None):
@@ -39,9 +41,9 @@ def sampled_length(scene, tol=None, seed=0, threads=None):
     Returns
     -------
     Estimate
-        The error is two standard errors and what kappa changes if the threshold is
-        halved, the time after the passage is halved, or paths are looked at every other step only;
-        the bias of the steps themselves is not measured.
+        The error is two standard errors and what kappa changes if the threshold is halved, the
+        time after the passage is halved, or paths are looked at every other step only; and the bias
+        of the time step, as measured by halving it on the same noise, with two of its own.
 
     Raises
     ------
@@ -76,17 +78,37 @@ def _estimate(scene, lag, paths, seed, threads):
     blocks = over_blocks(scene, grid, paths, seed, position, 0, threads, "strang", "float64", False)
     integral = np.concatenate(blocks, axis=1)[after:]  # without the approach to stationarity
     far = _FAR * np.std(integral[after] - integral[0])
-    value, spread = _gain(integral, far, after)
+    value, spread = _mean(*_gain(integral, far, after))
     changes = [
-        _gain(integral, far / 2, after)[0] - value,
-        _gain(integral, far, after // 2)[0] - value,
-        _gain(integral[::2], far, after // 2)[0] - value,
+        _mean(*_gain(other, threshold, later))[0] - value
+        for other, threshold, later in (
+            (integral, far / 2, after),
+            (integral, far, after // 2),
+            (integral[::2], far, after // 2),
+        )
     ]
-    return value, float(2 * spread + np.linalg.norm(changes))
+    fewer = max(_PILOT_PATHS, paths // _FEWER)
+    bias, deviation = _step_bias(
+        scene, step, len(grid), fewer, far, after, labelled(seed, "halving"), threads
+    )
+    error = 2 * spread + np.linalg.norm(changes) + abs(bias) + 2 * deviation
+    return value, float(error)
+
+
+def _step_bias(scene, step, steps, paths, far, after, seed, threads):
+    """Bias of the mean gain with the step, and its standard error, from half of it."""
+    integrals = coupled_paths(scene, step, steps, paths, seed, threads)[:, after:]
+    (fine, fine_count), (coarse, count) = (_gain(paths, far, after) for paths in integrals)
+    factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
+    change = coarse.sum() / count.sum() - fine.sum() / fine_count.sum()
+    # the ratio of sums over independent paths, linearised
+    parts = (coarse - count * coarse.sum() / count.sum()) / count.sum()
+    parts -= (fine - fine_count * fine.sum() / fine_count.sum()) / fine_count.sum()
+    return factor * change, factor * float(np.sqrt(np.sum(parts**2)))
 
 
 def _gain(integral, threshold, after):
-    """Mean gain beyond the threshold `after` steps after its passage, and its standard error."""
+    """Sums by path of the gains `after` steps after passages of the threshold, and their numbers."""
     base = integral[0].copy()
     passed, side = np.full(len(base), -1), np.zeros(len(base))
     total, count = np.zeros((2, len(base)))
@@ -98,5 +120,10 @@ def _gain(integral, threshold, after):
         total[done] += (side * moved)[done] - threshold
         count[done] += 1
         base[done], passed[done] = here[done], -1
+    return total, count
+
+
+def _mean(total, count):
+    """Mean of the gains, and its standard error."""
     value = total.sum() / count.sum()
     return float(value), float(np.sqrt(np.sum((total - value * count) ** 2)) / count.sum())
