@@ -13,7 +13,7 @@ from nonsmooth.half_space import walls
 from nonsmooth.laplace import hyperbola
 from nonsmooth.milne import expansion
 from nonsmooth.ordinates import ordinates
-from nonsmooth.overshoot import sampled_length
+from nonsmooth.overshoot import sampled_length, sampled_poisson
 from nonsmooth.transport import first_passage
 
 FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
@@ -160,6 +160,13 @@ class TestSampledLength:
         found = sampled_length(FRICTION, seed=1)
         assert abs(found.value - 0.2911259630) < found.error
         assert found.error < 0.2 * found.value
+
+    def test_poisson_solution_at_a_start(self):
+        """That of discrete ordinates, within the stated error, two standard errors and more."""
+        scene = ns.Scene("friction", start={"y": 0.5})
+        found, exact = sampled_poisson(scene, seed=1), expansion(scene)[0].poisson
+        assert abs(found.value - exact) < found.error
+        assert found.error < 0.3 * exact
 
 
 class TestSpectral:

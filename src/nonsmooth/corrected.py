@@ -48,7 +48,7 @@ from nonsmooth.brownian import (
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.half_space import Walls, walls
 from nonsmooth.milne import expansion
-from nonsmooth.overshoot import sampled_length
+from nonsmooth.overshoot import sampled_length, sampled_poisson
 from nonsmooth.spectral import applies
 from nonsmooth.streams import labelled
 from nonsmooth.variance import limit_variance
@@ -69,7 +69,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
     ----------
     scene : Scene
         With the state y and white noise; odd g for the orders 2 and 3. For order 1 also two
-        variables with finite n and odd g, or any other with odd g and the start at the origin.
+        variables with finite n and odd g, or any other with odd g.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite, "1".
     horizons : numpy.ndarray, shape (k,)
@@ -134,16 +134,12 @@ def _constants(scene, order, seed, threads):
             Walls(c.diffusion, c.length, c.length, 0.0, c.poisson)
             for c in milne_plane.leading(scene)
         )
-    if any(scene.start.values()):
-        raise SceneError(
-            f"for the state ({', '.join(scene.state)}) with {scene.noise.title} the corrected "
-            "formula starts at the origin; use that start, or method='monte_carlo'"
-        )
     length = sampled_length(scene, seed=labelled(seed, "length"), threads=threads)
     gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
+    start = sampled_poisson(scene, labelled(seed, "start"), threads)
     return (
-        Walls(gamma2.value / 2, length.value, length.value, 0.0, 0.0),
-        Walls(gamma2.error / 2, length.error, length.error, 0.0, 0.0),
+        Walls(gamma2.value / 2, length.value, length.value, 0.0, start.value),
+        Walls(gamma2.error / 2, length.error, length.error, 0.0, start.error),
     )
 
 

@@ -15,13 +15,14 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.panel import TOTAL_DELTA
 from nonsmooth.streams import labelled
 from nonsmooth.times import equal_steps
-from nonsmooth.trajectories import coarse_step, coupled_paths, over_blocks
+from nonsmooth.trajectories import coarse_step, coupled_paths, over_blocks, simulate
 
 _PATHS = 2000  # at first; a multiple of the block size
 _LAG = 4.0  # time after a passage, in units of the larger of 1 and 1 / C_b, at first
 _CYCLES = 75  # duration of a path over that time
 _FAR = 2.0  # threshold over the standard deviation of what int g gains in that time
 _ATTEMPTS = 3
+_START = 0.05  # tolerance of `simulate`, for the mean from the start
 _SHARE = 0.2  # error over kappa, unless tol is given
 _PILOT_PATHS, _FEWER = 1000, 4  # paths of the halving: at least, and of how many those are one
 
@@ -67,6 +68,38 @@ def sampled_length(scene, tol=None, seed=0, threads=None):
     raise ToleranceError(f"kappa = {value:.3g} has an error of {error:.1e}, above tol; loosen tol")
 
 
+def sampled_poisson(scene, seed=0, threads=None):
+    """Estimate the Poisson solution of g at the start, the mean of int g after a long time.
+
+    Parameters
+    ----------
+    scene : Scene
+        With odd g.
+    seed, threads
+        Of Monte Carlo: int or tuple; all cores unless given.
+
+    Returns
+    -------
+    Estimate
+        The error is two standard errors, what the second half of the time adds, and the bias of the
+        time step with two standard errors. Exactly 0 at the origin, where drift and g are odd.
+    """
+    began = time.perf_counter()
+    if not any(scene.start.values()):
+        return Estimate(0.0, 0.0, "symmetry", 0.0)
+    lag = _LAG * max(1.0, 1 / scene.damping)
+    run = simulate(scene, 2 * lag, _START, times=[lag, 2 * lag], seed=seed, threads=threads)
+    middle, end = run["mean"].values
+    last = run.isel(time=-1)
+    error = (
+        2 * last["mean_error"]
+        + abs(end - middle)
+        + abs(last["mean_bias"])
+        + 2 * last["mean_bias_error"]
+    )
+    return Estimate(float(end), float(error), "Monte Carlo", time.perf_counter() - began)
+
+
 def _estimate(scene, lag, paths, seed, threads):
     step = coarse_step(scene) / 2
     after = 2 * round(lag / step / 2)
@@ -108,7 +141,7 @@ def _step_bias(scene, step, steps, paths, far, after, seed, threads):
 
 
 def _gain(integral, threshold, after):
-    """Sums by path of the gains `after` steps after passages of the threshold, and their numbers."""
+    """Sum by path what is gained `after` steps after a passage of the threshold, and count them."""
     base = integral[0].copy()
     passed, side = np.full(len(base), -1), np.zeros(len(base))
     total, count = np.zeros((2, len(base)))
