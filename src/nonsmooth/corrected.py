@@ -178,7 +178,7 @@ def _evaluate(constants, lower, upper, horizons, p, order):
         value, earlier, later = (
             crossed(horizons * np.exp(change + sign * doubt)) for sign in (0, -1, 1)
         )
-        distance = np.maximum(later - value, value - earlier)
+        distance = np.maximum(np.abs(later - value), np.abs(value - earlier))
         if found:  # no farther than the order before
             distance = np.minimum(distance, found[-1][1] + np.abs(value - found[-1][0]))
         found.append((value, distance))
