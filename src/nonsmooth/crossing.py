@@ -212,13 +212,14 @@ def crossing_probability(
         ``"spectral"`` is deterministic, for one state variable and white noise: it is taken there
         unless a parameter of another method is given, and ``"monte_carlo"`` elsewhere.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
-        ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`; beyond the
-        state y with white noise it needs odd g, order 1 and, with more than two variables,
+        ``"corrected"`` has an error of the order 1/p, p^(-3/2) or p^(-2), see `corrected`; beyond
+        the state y with white noise it needs odd g, order 1 and, with more than two variables,
         constants that are sampled.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (two standard errors are at most `tol`) and on the time
-        step (its bias is half). ``"spectral"``: 1e-7 unless given. The formulas have none.
+        step (its bias is half). ``"spectral"``: 1e-7 unless given. ``"corrected"``: any error
+        is returned unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -228,7 +229,7 @@ def crossing_probability(
         ``"monte_carlo"`` only; ``"float32"`` unless given.
     threads : int, optional
         All cores unless given.
-    order : {1, 2}, optional
+    order : {1, 2, 3}, optional
         Of ``"corrected"``; 1 unless given.
 
     Returns
@@ -239,9 +240,9 @@ def crossing_probability(
         limits `lower` and `upper`, and `step_bias`, the bias of the time step as measured by
         halving it, with its standard error
         `step_bias_error`; for ``"spectral"`` the difference of two resolutions, with `survival`
-        and `survival_error`, the complement to relative accuracy; for the formulas the error
-        inherited from gamma^2 and the other constants only, not the distance to the finite-p
-        probability.
+        and `survival_error`, the complement to relative accuracy; for ``"corrected"`` a bound
+        of the distance to the probability at this p, from the size of the next corrections; for
+        ``"asymptotic"`` the error inherited from gamma^2 only, not the distance to a finite p.
 
     Raises
     ------
@@ -337,8 +338,8 @@ def _spectral(scene, threshold, horizons, p, seed, threads, tol=1e-7):
     return spectral_crossing(scene, lower, upper, p * horizons, tol), {}
 
 
-def _corrected(scene, threshold, horizons, p, seed, threads, order=1):
-    value, error = corrected_crossing(scene, *threshold, horizons, p, order, seed, threads)
+def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
+    value, error = corrected_crossing(scene, *threshold, horizons, p, order, tol, seed, threads)
     return {"probability": value, "probability_error": error}, {}
 
 

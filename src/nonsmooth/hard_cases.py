@@ -467,12 +467,18 @@ CASES = [
         "$p = 10^6$",
         "crossing, spectral",
         _crossed(_friction(), 0.6, 2.0, p=1e6, method="spectral"),
-        _other(_crossed(_friction(), 0.6, 2.0, p=1e6, method="corrected", order=2), 1e-8),
+        _other(_crossed(_friction(), 0.6, 2.0, p=1e6, method="corrected", order=3)),
     ),
     Case(
         "$p = 10^{-3}$",
         "crossing, Monte Carlo",
         _crossed(_friction(), 1e-3, 2.0, p=1e-3),
+        _other(_crossed(_friction(), 1e-3, 2.0, p=1e-3, method="spectral")),
+    ),
+    Case(
+        "$p = 10^{-3}$",
+        "crossing, corrected formula",
+        _crossed(_friction(), 1e-3, 2.0, p=1e-3, method="corrected", order=2),
         _other(_crossed(_friction(), 1e-3, 2.0, p=1e-3, method="spectral")),
     ),
     Case(
@@ -494,8 +500,7 @@ CASES = [
         "$b$ of probability $10^{-12}$",
         "crossing, spectral",
         _crossed(_friction(), 3.75, 2.0, p=1000, method="spectral"),
-        # its own error is of the order p^(-3/2) b^4
-        _other(_crossed(_friction(), 3.75, 2.0, p=1000, method="corrected", order=2), 0.02),
+        _other(_crossed(_friction(), 3.75, 2.0, p=1000, method="corrected", order=3)),
     ),
     Case(
         "$b$ of probability $10^{-12}$",

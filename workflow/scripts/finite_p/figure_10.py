@@ -2,13 +2,18 @@
 
 import matplotlib.pyplot as plt
 
-from nonsmooth.plotting import BLACK, BLUE, ORANGE, TEXT_WIDTH, draw
+from nonsmooth.plotting import BLACK, BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
 
-LOOKS = {"plain": (ORANGE, "o", "-"), "order 1": (BLUE, "s", "--"), "order 2": (BLACK, "^", "-.")}
+LOOKS = {
+    "plain": (ORANGE, "o", "-"),
+    "order 1": (BLUE, "s", "--"),
+    "order 2": (BLACK, "^", "-."),
+    "order 3": (GREEN, "D", (0, (3, 1))),
+}
 
 
 def errors(formulas, fit_from):
-    """Draw the largest error over T where it is resolved, and the fitted powers.
+    """Draw the largest error over T where it is resolved, what is stated, and the fitted powers.
 
     Returns
     -------
@@ -18,7 +23,7 @@ def errors(formulas, fit_from):
     p = formulas["p"].values
     for name, (color, marker, dashes) in LOOKS.items():
         row = formulas.sel(formula=name)
-        known = row["resolved"].values.astype(bool)
+        known = row["resolved"].values.any(axis=-1)
         axis.plot(
             p[known],
             row["distance"].values[known],
@@ -28,6 +33,9 @@ def errors(formulas, fit_from):
             linestyle=dashes,
             label=f"{name}: slope ${float(row['slope']):.2f}$",
         )
+        if name != "plain":
+            stated = row["probability_error"].max("horizon")
+            axis.plot(p, stated, color=color, linewidth=0.6, linestyle=dashes, alpha=0.7)
     floor = formulas["exact_error"].max("horizon")
     axis.plot(p, floor, color="0.5", linestyle=":", label="error of the exact value")
     axis.axvspan(p[0] / 2, fit_from, color="0.95", linewidth=0)

@@ -12,20 +12,24 @@ from nonsmooth.milne import expansion
 from nonsmooth.scene import Scene
 
 EXACT = {"method": "spectral"}
+LIMIT = "plain"  # states no distance to a finite p
 FORMULAS = {
-    "plain": {"method": "asymptotic"},
+    LIMIT: {"method": "asymptotic"},
     "order 1": {"method": "corrected", "order": 1},
     "order 2": {"method": "corrected", "order": 2},
+    "order 3": {"method": "corrected", "order": 3},
 }
 CONSTANTS = {
     "diffusion": "D = gamma^2 / 2",
     "length": "extrapolation length kappa",
     "dispersion": "dispersion B",
     "corner": "dipole S of the corner between initial time and threshold",
+    "stretch": "kappa_3, by which short waves see another extrapolation length",
     "poisson": "Poisson solution u at the start",
     "start": "h at the start",
+    "third": "r at the start",
 }
-RESOLVED = 10  # a distance is resolved where it is as many times its own error
+RESOLVED = 10  # an error is resolved where it is as many times that of the exact value
 
 
 def formulas(scene, threshold, horizons, p, fit_from):
@@ -49,7 +53,7 @@ def formulas(scene, threshold, horizons, p, fit_from):
     Raises
     ------
     CheckError
-        If fewer than two distances can be fitted.
+        If fewer than two distances can be fitted, or one is larger than stated.
     """
     scene, p = Scene(**scene), np.array(p, dtype=float)
 
@@ -59,11 +63,18 @@ def formulas(scene, threshold, horizons, p, fit_from):
 
     exact, exact_error = evaluate(EXACT)
     value, error = np.array([evaluate(options) for options in FORMULAS.values()]).swapaxes(0, 1)
-    distance = np.abs(value - exact).max(axis=-1)
-    distance_error = (error + exact_error).max(axis=-1)
-    resolved = distance > RESOLVED * distance_error
+    off = np.abs(value - exact)
+    for name, bad in zip(FORMULAS, off > error + exact_error, strict=True):
+        if name != LIMIT and bad.any():
+            raise CheckError(
+                f"finite_p: the error of the formula {name!r} is larger than it states at p = "
+                f"{p[bad.any(axis=-1)][0]:g}"
+            )
+    distance = off.max(axis=-1)
+    distance_error = np.broadcast_to(exact_error.max(axis=-1), distance.shape)
+    resolved = off > RESOLVED * exact_error
     slopes, deviations = [], []
-    for name, row, known in zip(FORMULAS, distance, resolved, strict=True):
+    for name, row, known in zip(FORMULAS, distance, resolved.any(axis=-1), strict=True):
         used = (p >= fit_from) & known
         if used.sum() < 2:
             raise CheckError(
@@ -76,15 +87,19 @@ def formulas(scene, threshold, horizons, p, fit_from):
     every = ("formula", "p", "horizon")
     variables = {
         "probability": (every, value, "probability by the formula"),
-        "probability_error": (every, error, "error inherited from its constants"),
+        "probability_error": (
+            every,
+            error,
+            "error that it states; of the plain formula, from gamma^2 only",
+        ),
         "exact": (every[1:], exact, "probability by the spectral method"),
         "exact_error": (every[1:], exact_error, "difference of two resolutions"),
         "distance": (every[:2], distance, "largest error of the formula over T"),
-        "distance_error": (every[:2], distance_error, "largest error of both methods over T"),
+        "distance_error": (every[:2], distance_error, "largest error of the exact value over T"),
         "resolved": (
-            every[:2],
+            every,
             resolved.astype(np.int8),
-            f"1 where the distance is {RESOLVED} times its error",
+            f"1 where the error is {RESOLVED} times that of the exact value",
         ),
         "slope": ("formula", slopes, "power of p that fits the distance"),
         "slope_error": ("formula", deviations, "largest deviation of a slope between neighbours"),

@@ -202,11 +202,12 @@ def _ergodicity(found, section, scenes):
 
 def _finite_p(contained, formulas, section):
     """Constants and errors of the corrected formulas, and how often bands contain exact curves."""
-    constants = ("diffusion", "length", "dispersion", "corner", "start")
+    constants = ("diffusion", "length", "dispersion", "corner", "stretch", "start")
     p, distance = formulas["p"].values, formulas["distance"]
     first, second = (distance.sel(formula=name).values for name in ("order 1", "order 2"))
-    resolved = formulas["resolved"].sel(formula="order 2").values.astype(bool)
-    better = p[p > max(p[resolved & (second >= first)], default=0.0)]
+    resolved = formulas["resolved"].any("horizon")
+    known = resolved.sel(formula="order 2").values
+    better = p[p > max(p[known & (second >= first)], default=0.0)]
     return {name: f"{float(formulas[name]):.8f}" for name in constants} | {
         "constants_error": _scientific(
             max(float(formulas[f"{name}_error"]) for name in constants), bound=True
@@ -221,10 +222,12 @@ def _finite_p(contained, formulas, section):
             {"p": f"{scale:g}"}
             | {
                 str(name): _scientific(distance.sel(formula=name)[k])
+                if resolved.sel(formula=name)[k]
+                else None
                 for name in distance["formula"].values
             }
             for k, scale in enumerate(p)
-            if resolved[k]
+            if known[k]
         ],
         "order_2_better": f"{better[0]:g}" if better.size else "oo",
         "share": f"{100 * float(contained['share']):.1f}",

@@ -1,0 +1,149 @@
+"""The corrected formulas against the spectral values."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import ToleranceError
+
+FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
+STARTED = replace(FRICTION, start={"y": 0.5})  # u, h and r are not 0
+# g without symmetry, centred; 4e-16 is the error of the mean
+SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079", start={"y": 0.2})
+HORIZONS = (1.0, 2.0, 4.0)
+PLAIN = {"method": "asymptotic"}
+ORDERS = tuple({"method": "corrected", "order": order} for order in (1, 2, 3))
+ONE_SIDED, UNEQUAL = (-np.inf, 0.6), (-0.3, 0.6)
+
+
+@lru_cache
+def exact(threshold, p, scene, horizons=HORIZONS):
+    """Spectral values."""
+    return ns.crossing_probability(scene, threshold, horizons, p, method="spectral")
+
+
+def errors(threshold, p, scene, formula, horizons=HORIZONS):
+    """Distances to the spectral values, which are no larger than stated."""
+    found = ns.crossing_probability(scene, threshold, horizons, p, **formula)
+    reference = exact(threshold, p, scene, horizons)
+    distance = np.abs(found.probability - reference.probability).values
+    if formula != PLAIN:
+        assert np.all(distance <= found.probability_error + reference.probability_error)
+    return distance
+
+
+class TestOrders:
+    """Errors fall like p^(-1/2), p^(-1), p^(-3/2), p^(-2)."""
+
+    # a decade apart; the errors of orders 1 and 3 bend by less than 0.2, their next orders being
+    # at most a quarter at p = 100, as the ratio of successive errors shows, and less later
+    P = (100.0, 1000.0)
+
+    def slope(self, threshold, scene, formula):
+        """Fit the order to the largest error over T."""
+        first, last = (errors(threshold, p, scene, formula).max() for p in self.P)
+        return np.log10(last / first)
+
+    def test_plain(self):
+        """W_star(b / gamma, T)."""
+        assert self.slope(0.6, FRICTION, PLAIN) == pytest.approx(-0.5, abs=0.2)
+
+    @pytest.mark.parametrize(
+        ("threshold", "scene"),
+        [(0.6, FRICTION), (UNEQUAL, STARTED), (ONE_SIDED, FRICTION)],
+        ids=["equal", "unequal, start elsewhere", "one-sided"],
+    )
+    def test_corrected(self, threshold, scene):
+        """For every kind of threshold, from the origin and from elsewhere.
+
+        Order 3 is exact against order 2, whose own error bends more: it is followed to p = 1e6,
+        where no spectral value resolves it.
+        """
+        assert self.slope(threshold, scene, ORDERS[0]) == pytest.approx(-1, abs=0.2)
+        assert self.slope(threshold, scene, ORDERS[2]) == pytest.approx(-2, abs=0.2)
+        for p in self.P:
+            second, third = (errors(threshold, p, scene, formula).max() for formula in ORDERS[1:])
+            assert third < 0.25 * second
+        changes = []
+        for p in (1e4, 1e6):
+            second, third = (
+                ns.crossing_probability(scene, threshold, HORIZONS, p, **formula).probability
+                for formula in ORDERS[1:]
+            )
+            changes.append(float(np.abs(third - second).max()))
+        assert np.log10(changes[1] / changes[0]) / 2 == pytest.approx(-1.5, abs=0.1)
+
+    @pytest.mark.parametrize("threshold", [UNEQUAL, ONE_SIDED])
+    def test_without_symmetry(self, threshold):
+        """Order 1, two decades apart."""
+        first, last = (
+            errors(threshold, p, SKEWED, ORDERS[0], (2.0,)).max() for p in (100.0, 10_000.0)
+        )
+        assert np.log10(last / first) / 2 == pytest.approx(-1, abs=0.15)
+
+
+class TestSmallScales:
+    """Where the expansion does not hold."""
+
+    @pytest.mark.parametrize(
+        ("p", "value"), [(1, 0.1606775), (10, 0.3674251), (100, 0.4595991), (1000, 0.4902812)]
+    )
+    def test_published_values(self, p, value):
+        """METHODS, section 2, with seven digits: the errors hold, and at p = 1 are large."""
+        for formula in ORDERS:
+            found = ns.crossing_probability(FRICTION, 0.6, [2.0], p, **formula)
+            error = found.probability_error[0]
+            assert abs(found.probability[0] - value) <= error + 1e-7
+            assert (error > 0.1) == (p == 1)
+
+    @pytest.mark.parametrize("threshold", [0.6, 2.0])
+    def test_no_worse_than_order_1(self, threshold):
+        """At p = 1, in the largest error over T: p and b act as sqrt(p) b."""
+        horizons = tuple(np.geomspace(0.5, 2.0, 4) * (threshold + 0.3) ** 2 / 0.14)
+        first, second, third = (
+            errors(threshold, 1.0, FRICTION, formula, horizons).max() for formula in ORDERS
+        )
+        assert second <= 1.02 * first
+        assert third <= 1.001 * first
+
+    @pytest.mark.parametrize(
+        ("scene", "threshold"),
+        [(STARTED, UNEQUAL), (ns.Scene("friction", n=10, observable="tanh(3*y)"), 0.6)],
+        ids=["start elsewhere", "B < 0"],
+    )
+    @pytest.mark.parametrize("formula", ORDERS[1:])
+    def test_is_a_distribution(self, formula, scene, threshold):
+        """Between 0 and 1, and monotone in T, at any p."""
+        for p in (1e-2, 1.0, 30.0):
+            value = ns.crossing_probability(
+                scene, threshold, np.geomspace(1e-3, 1e3, 200), p, **formula
+            ).probability.values
+            assert np.all((value >= 0) & (value <= 1))
+            assert np.all(np.diff(value) >= -1e-14)
+
+    def test_far_below_its_range(self):
+        """Nothing is claimed at p = 1e-3; and a tolerance stops it, with the best value."""
+        problem = FRICTION, 0.6, [1.0, 200.0], 1e-3
+        found = ns.crossing_probability(*problem, method="corrected", order=2)
+        assert found.probability_error[1] > 0.5
+        with pytest.raises(ToleranceError, match=r"has W = .* with an error of"):
+            ns.crossing_probability(*problem, method="corrected", tol=1e-2)
+        ns.crossing_probability(FRICTION, 0.6, [1.0], 100, method="corrected", tol=1e-2)
+
+    def test_a_start_beyond_the_threshold(self):
+        """E u is larger than b + kappa at a small p: no value, instead of a traceback."""
+        found = ns.crossing_probability(
+            replace(FRICTION, start={"y": 3.0}), 0.01, [1.0], 0.01, method="corrected"
+        )
+        assert found.probability_error[0] == 1
+
+
+def test_orders_beyond_the_first_need_odd_g():
+    """The message names the cure."""
+    with pytest.raises(ns.NonsmoothError, match="order=1"):
+        ns.crossing_probability(SKEWED, 0.6, [1.0], method="corrected", order=2)
+    with pytest.raises(ns.NonsmoothError, match="orders 1, 2 and 3"):
+        ns.crossing_probability(FRICTION, 0.6, [1.0], method="corrected", order=4)
