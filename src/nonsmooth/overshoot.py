@@ -12,10 +12,17 @@ import numpy as np
 from nonsmooth import schemes
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
-from nonsmooth.panel import TOTAL_DELTA
-from nonsmooth.streams import labelled
-from nonsmooth.times import equal_steps
-from nonsmooth.trajectories import coarse_step, coupled_paths, over_blocks, simulate
+from nonsmooth.kernels import kernel
+from nonsmooth.march import march, march_pair
+from nonsmooth.panel import TOTAL_DELTA, new_panel
+from nonsmooth.streams import blocks, labelled
+from nonsmooth.trajectories import (
+    coarse_step,
+    over_blocks,
+    parallel,
+    require_finite,
+    simulate,
+)
 
 _PATHS = 2000  # at first; a multiple of the block size
 _LAG = 4.0  # time after a passage, in units of the larger of 1 and 1 / C_b, at first
@@ -24,7 +31,9 @@ _FAR = 2.0  # threshold over the standard deviation of what int g gains in that 
 _ATTEMPTS = 3
 _START = 0.05  # tolerance of `simulate`, for the mean from the start
 _SHARE = 0.2  # error over kappa, unless tol is given
-_PILOT_PATHS, _FEWER = 1000, 4  # paths of the halving: at least, and of how many those are one
+# paths of the halving: at least, and of how many those are one; the former also of the spread
+_PILOT_PATHS, _FEWER = 1000, 4
+_EVERYWHERE = -np.inf, np.inf
 
 
 def sampled_length(scene, tol=None, seed=0, threads=None):
@@ -103,60 +112,114 @@ def sampled_poisson(scene, seed=0, threads=None):
 def _estimate(scene, lag, paths, seed, threads):
     step = coarse_step(scene) / 2
     after = 2 * round(lag / step / 2)
-    grid = equal_steps(np.arange(1, _CYCLES * after + 1) * step, step)
-
-    def position(panel, count):
-        return panel.total[TOTAL_DELTA, :count].copy()
-
-    blocks = over_blocks(scene, grid, paths, seed, position, 0, threads, "strang", "float64", False)
-    integral = np.concatenate(blocks, axis=1)[after:]  # without the approach to stationarity
-    far = _FAR * np.std(integral[after] - integral[0])
-    value, spread = _mean(*_gain(integral, far, after))
-    changes = [
-        _mean(*_gain(other, threshold, later))[0] - value
-        for other, threshold, later in (
-            (integral, far / 2, after),
-            (integral, far, after // 2),
-            (integral[::2], far, after // 2),
-        )
-    ]
-    fewer = max(_PILOT_PATHS, paths // _FEWER)
-    bias, deviation = _step_bias(
-        scene, step, len(grid), fewer, far, after, labelled(seed, "halving"), threads
+    far = _FAR * _spread(scene, step, after, labelled(seed, "spread"), threads)
+    # threshold, looks until the end of a cycle, steps between looks
+    variants = [(far, after, 1), (far / 2, after, 1), (far, after // 2, 1), (far, after // 2, 2)]
+    (value, spread), *others = (
+        _mean(*gains) for gains in _gains(scene, step, after, variants, paths, seed, threads)
     )
+    changes = [other - value for other, _ in others]
+    fewer = max(_PILOT_PATHS, paths // _FEWER)
+    own = labelled(seed, "halving")
+    bias, deviation = _step_bias(scene, step, after, variants[0], fewer, own, threads)
     error = 2 * spread + np.linalg.norm(changes) + abs(bias) + 2 * deviation
     return value, float(error)
 
 
-def _step_bias(scene, step, steps, paths, far, after, seed, threads):
+def _spread(scene, step, after, seed, threads):
+    """Estimate the standard deviation of what int g gains in the time of `after` steps."""
+
+    def position(panel, count):
+        return panel.total[TOTAL_DELTA, :count].copy()
+
+    grid = [(after, step), (after, step)]
+    before, end = over_blocks(
+        scene, grid, _PILOT_PATHS, seed, position, 0, threads, "strang", "float64", False
+    )[0]
+    return np.std(end - before)
+
+
+def _gains(scene, step, after, variants, paths, seed, threads):
+    """Sum by path what is gained in cycles, and count these: shape (variants, 2, paths)."""
+    s = schemes.coefficients(scene, "strang", step, "float64")
+
+    def run(job):
+        block, lanes = job
+        panel = new_panel(scene, seed, block, "float64")
+        integral = panel.total[TOTAL_DELTA, :lanes]
+        march(s, panel, lanes, after, *_EVERYWHERE)  # the approach to stationarity
+        cycles = [_begun(integral) for _ in variants]
+        for k in range(1, _CYCLES * after + 1):
+            march(s, panel, lanes, 1, *_EVERYWHERE)
+            for state, (threshold, looks, stride) in zip(cycles, variants, strict=True):
+                if k % stride == 0:
+                    _look(state, integral, threshold, looks)
+        require_finite([integral])
+        return np.array(cycles)[:, -2:]
+
+    return np.concatenate(parallel(run, blocks(0, paths), threads), axis=2)
+
+
+def _step_bias(scene, step, after, variant, paths, seed, threads):
     """Bias of the mean gain with the step, and its standard error, from half of it."""
-    integrals = coupled_paths(scene, step, steps, paths, seed, threads)[:, after:]
-    (fine, fine_count), (coarse, count) = (_gain(paths, far, after) for paths in integrals)
+    fine, coarse = (schemes.coefficients(scene, "strang", h, "float64") for h in (step / 2, step))
+    given = schemes.on_given_increments(coarse)
+    threshold, looks, _ = variant
+
+    def run(job):
+        block, lanes = job
+        panels = [new_panel(scene, seed, block, "float64") for _ in range(2)]
+        integrals = [panel.total[TOTAL_DELTA, :lanes] for panel in panels]
+        passage = np.full((2, lanes), np.inf)
+
+        def advance(steps):
+            march_pair(fine, given, *panels, lanes, steps, *_EVERYWHERE, 0.0, passage)
+
+        advance(after)
+        cycles = [_begun(integral) for integral in integrals]
+        for _ in range(_CYCLES * after):
+            advance(1)
+            for state, integral in zip(cycles, integrals, strict=True):
+                _look(state, integral, threshold, looks)
+        require_finite(integrals)
+        return np.array(cycles)[:, -2:]
+
+    half, whole = np.concatenate(parallel(run, blocks(0, paths), threads), axis=2)
     factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
-    change = coarse.sum() / count.sum() - fine.sum() / fine_count.sum()
     # the ratio of sums over independent paths, linearised
-    parts = (coarse - count * coarse.sum() / count.sum()) / count.sum()
-    parts -= (fine - fine_count * fine.sum() / fine_count.sum()) / fine_count.sum()
+    parts = _deviations(*whole) - _deviations(*half)
+    change = _mean(*whole)[0] - _mean(*half)[0]
     return factor * change, factor * float(np.sqrt(np.sum(parts**2)))
 
 
-def _gain(integral, threshold, after):
-    """Sum by path what is gained `after` steps after a passage of the threshold, and count them."""
-    base = integral[0].copy()
-    passed, side = np.full(len(base), -1), np.zeros(len(base))
-    total, count = np.zeros((2, len(base)))
-    for k, here in enumerate(integral):
-        moved = here - base
-        leaving = (passed < 0) & (np.abs(moved) >= threshold)
-        passed[leaving], side[leaving] = k, np.sign(moved[leaving])
-        done = (passed >= 0) & (k - passed >= after)
-        total[done] += (side * moved)[done] - threshold
-        count[done] += 1
-        base[done], passed[done] = here[done], -1
-    return total, count
+def _begun(integral):
+    """State of the cycles: int g at their start, side and looks since passage, sums and counts."""
+    state = np.zeros((5, len(integral)))
+    state[0] = integral
+    return state
+
+
+@kernel
+def _look(state, integral, threshold, looks):
+    """Notice passages, and after some more looks the gains beyond the threshold."""
+    base, side, waited, total, count = state
+    for i in range(len(integral)):
+        moved = integral[i] - base[i]
+        if side[i] != 0:
+            waited[i] += 1
+        elif abs(moved) >= threshold:
+            side[i] = 1.0 if moved > 0 else -1.0
+        if side[i] != 0 and waited[i] >= looks:
+            total[i] += side[i] * moved - threshold
+            count[i] += 1
+            base[i], side[i], waited[i] = integral[i], 0.0, 0.0
 
 
 def _mean(total, count):
     """Mean of the gains, and its standard error."""
-    value = total.sum() / count.sum()
-    return float(value), float(np.sqrt(np.sum((total - value * count) ** 2)) / count.sum())
+    return float(total.sum() / count.sum()), float(np.linalg.norm(_deviations(total, count)))
+
+
+def _deviations(total, count):
+    """Contribution of each path to the error of the mean."""
+    return (total - count * total.sum() / count.sum()) / count.sum()

@@ -200,38 +200,6 @@ def coupled(
     return sum(change for change, _ in results), np.hstack([passage for _, passage in results])
 
 
-def coupled_paths(scene, step, count, paths, seed, threads=None, scheme="strang"):
-    """Simulate D in double precision with half a step and with the step, on the same noise.
-
-    Parameters
-    ----------
-    scene, step, paths, seed, threads, scheme
-        As for `coupled`.
-    count : int
-        Number of the longer steps.
-
-    Returns
-    -------
-    numpy.ndarray, shape (2, count, paths)
-        D after every longer step, with step h/2 and h.
-    """
-    fine, coarse = (schemes.coefficients(scene, scheme, h, "float64") for h in (step / 2, step))
-
-    def run(job):
-        block, lanes = job
-        panel, other = (new_panel(scene, seed, block, "float64") for _ in range(2))
-        passage, given = np.full((2, lanes), np.inf), schemes.on_given_increments(coarse)
-        kept = np.empty((2, count, lanes))
-        for k in range(count):
-            march_pair(fine, given, panel, other, lanes, 1, *_EVERYWHERE, 0.0, passage)
-            kept[:, k] = panel.total[TOTAL_DELTA, :lanes], other.total[TOTAL_DELTA, :lanes]
-        return kept
-
-    results = parallel(run, blocks(0, paths), threads)
-    require_finite(results)
-    return np.concatenate(results, axis=2)
-
-
 def moments(gram):
     """Mean and variance of D, their standard errors, by regression on the control variates.
 

@@ -19,7 +19,7 @@ rule plasticity_variance:
         tolerance=lookup(dpath="plasticity/tolerance", within=config),
         seed=lookup(dpath="seed", within=config),
     message:
-        "Compute gamma^2 of the permanent deformation"
+        "Compute gamma^2 and kappa of the permanent deformation"
     script:
         "../scripts/plasticity/variance.py"
 
@@ -70,7 +70,7 @@ rule check_plasticity:
         "../envs/environment.yaml"
     threads: 1
     message:
-        "Compare the asymptotic formula for the permanent deformation with Monte Carlo"
+        "Compare the formulas for the permanent deformation with Monte Carlo"
     script:
         "../scripts/plasticity/check.py"
 

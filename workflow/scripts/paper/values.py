@@ -57,7 +57,7 @@ def values(
     contained, formulas : xarray.Dataset
         Figure 2b's bands against exact curves; the corrected formulas.
     deformation, deformation_variance : xarray.Dataset
-        The formula for the permanent deformation against Monte Carlo, and its gamma^2.
+        The formulas for the permanent deformation against Monte Carlo, and their constants.
     rates : xarray.Dataset
         Table 10.
     convergence : list of xarray.Dataset
@@ -291,7 +291,7 @@ def _plasticity(deformation, variance, section):
         formula, difference, error = (
             run[name].values for name in ("probability", "difference", "difference_error")
         )
-        sampled = formula - difference
+        sampled, corrected = formula - difference, run["corrected_difference"].values
         largest, least = np.argmax(np.abs(difference)), np.argmin(difference)
         too_low = difference < -SIGNIFICANT * error
         low = max(low, *sampled[too_low], 0.0)
@@ -300,6 +300,8 @@ def _plasticity(deformation, variance, section):
                 "limit": f"{limit:g}",
                 "scaled": f"{limit / np.sqrt(gamma2 * duration[-1]):.2f}",
                 "formula": f"{formula[-1]:.3f}",
+                "corrected": f"{float(run['corrected'][-1]):.3f}",
+                "corrected_largest": f"{corrected[np.argmax(np.abs(corrected))]:+.3f}",
                 "sampled": f"{sampled[-1]:.3f}",
                 "last": f"{difference[-1]:+.3f}",
                 "last_ratio": f"{abs(difference[-1]) / error[-1]:.0f}",
@@ -326,6 +328,8 @@ def _plasticity(deformation, variance, section):
         "relaxations": f"{section['duration'] / relaxation_time(oscillator):g}",
         "gamma2": f"{gamma2:.4f}",
         "gamma2_error": _scientific(variance["gamma2_error"], bound=True),
+        "length": f"{float(variance['length']):.2f}",
+        "length_error": f"{float(variance['length_error']):.2f}",
         "limits": limits,
         "low": f"{low:.2g}",
         "significant": f"{SIGNIFICANT:g}",
@@ -349,8 +353,9 @@ def _example(section):
             f"                 {oscillator})",
             f"found = ns.asymptotic_variance(scene, tol={section['tolerance']:g}, "
             'method="monte_carlo")',
+            "kappa = ns.extrapolation_length(scene)",
             f"limit, duration = {limit:g}, {section['duration']:g}",
-            "ns.brownian_crossing(limit / found.value**0.5, duration)",
+            "ns.brownian_crossing((limit + kappa.value) / found.value**0.5, duration)",
         ]
     )
 

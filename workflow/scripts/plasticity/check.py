@@ -1,4 +1,4 @@
-"""Evaluate the asymptotic formula from gamma^2 alone, and compare it with Monte Carlo."""
+"""Evaluate the plain and the corrected formula, and compare them with Monte Carlo."""
 
 import numpy as np
 from scipy.special import ndtri
@@ -9,12 +9,22 @@ from nonsmooth.errors import CheckError
 from nonsmooth.jobs import produce
 
 FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
+DESCRIPTIONS = {
+    "probability": "W_star(limit / gamma, duration)",
+    "probability_error": "error inherited from gamma^2",
+    "difference": "formula less Monte Carlo",
+    "difference_error": "standard error of the difference",
+    "corrected": "W_star((limit + kappa) / gamma, duration)",
+    "corrected_error": "error inherited from gamma^2 and kappa",
+    "corrected_difference": "corrected formula less Monte Carlo",
+    "corrected_difference_error": "standard error of that difference",
+}
 
 
 def compare(variance, monte_carlo):
-    """Subtract Monte Carlo from W_star(limit / gamma, duration).
+    """Subtract Monte Carlo from W_star(limit / gamma, duration), and with limit + kappa.
 
-    The difference is a property of the formula as long as the bias of the time step is not
+    The differences are properties of the formulas as long as the bias of the time step is not
     significantly above the standard error, which is checked.
 
     Parameters
@@ -34,10 +44,11 @@ def compare(variance, monte_carlo):
         If the time step's bias is significantly above the standard error.
     """
     gamma2, gamma2_error = float(variance["gamma2"]), float(variance["gamma2_error"])
+    length, length_error = float(variance["length"]), float(variance["length_error"])
     limits = np.array([float(run["limit"]) for run in monte_carlo])
     durations = monte_carlo[0]["duration"].values
     z = -ndtri(FALSE_ALARM / 2 / (len(limits) * len(durations)))
-    formula, differences = [], []
+    found = []
     for limit, run in zip(limits, monte_carlo, strict=True):
         excess = np.abs(run["bias"]) - z * run["bias_error"]
         if np.any(excess > run["probability_error"].max()):
@@ -46,26 +57,36 @@ def compare(variance, monte_carlo):
                 "reduce plasticity.step"
             )
         value, error = asymptotic_crossing(limit, durations, gamma2, gamma2_error)
-        formula.append((value, error))
-        differences.append(
-            (value - run["probability"].values, np.hypot(error, run["probability_error"].values))
+        corrected, corrected_error = asymptotic_crossing(
+            limit + length, durations, gamma2, gamma2_error
         )
-    (value, error), (difference, difference_error) = (
-        np.swapaxes(pairs, 0, 1) for pairs in (formula, differences)
-    )
-    over = ("limit", "duration")
+        farther, _ = asymptotic_crossing(
+            limit + length + length_error, durations, gamma2, gamma2_error
+        )
+        corrected_error = corrected_error + np.abs(farther - corrected)
+        sampled, standard_error = run["probability"].values, run["probability_error"].values
+        found.append(
+            {
+                "probability": value,
+                "probability_error": error,
+                "difference": value - sampled,
+                "difference_error": np.hypot(error, standard_error),
+                "corrected": corrected,
+                "corrected_error": corrected_error,
+                "corrected_difference": corrected - sampled,
+                "corrected_difference_error": np.hypot(corrected_error, standard_error),
+            }
+        )
     return artifact.dataset(
-        "Probability of exceeding a permanent deformation by the asymptotic formula",
-        "W_star(limit / gamma, duration), and its difference to Monte Carlo",
+        "Probability of exceeding a permanent deformation by the asymptotic formulas",
+        "W_star(limit / gamma, duration), with limit + kappa, and differences to Monte Carlo",
         {
             "limit": ("limit", limits, "limit of the permanent deformation"),
             "duration": ("duration", durations, "duration of the earthquake"),
         },
         {
-            "probability": (over, value, "W_star(limit / gamma, duration)"),
-            "probability_error": (over, error, "error inherited from gamma^2"),
-            "difference": (over, difference, "formula less Monte Carlo"),
-            "difference_error": (over, difference_error, "standard error of the difference"),
+            name: (("limit", "duration"), np.array([run[name] for run in found]), text)
+            for name, text in DESCRIPTIONS.items()
         },
     )
 

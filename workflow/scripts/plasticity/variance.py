@@ -1,15 +1,16 @@
-"""gamma^2 of the permanent deformation: all that the asymptotic formula needs."""
+"""gamma^2 and kappa of the permanent deformation: all that the asymptotic formulas need."""
 
 from functools import partial
 
 from nonsmooth import artifact
 from nonsmooth.jobs import produce
+from nonsmooth.milne import extrapolation_length
 from nonsmooth.plasticity import yielding_oscillator
 from nonsmooth.variance import asymptotic_variance
 
 
 def variance(ground, oscillator, tolerance, seed, threads):
-    """Compute the growth rate of the variance of the permanent deformation.
+    """Compute the growth rate of the variance of the permanent deformation, and kappa.
 
     Returns
     -------
@@ -19,13 +20,16 @@ def variance(ground, oscillator, tolerance, seed, threads):
     found = asymptotic_variance(
         scene, tolerance, method="monte_carlo", seed=(seed, "plasticity"), threads=threads
     )
+    length = extrapolation_length(scene, seed=(seed, "plasticity, length"), threads=threads)
     return artifact.dataset(
-        "Growth rate of the variance of the permanent deformation",
+        "Growth rate of the variance of the permanent deformation, and its extrapolation length",
         f"{scene}, {found.method}",
         {},
         {
             "gamma2": ((), found.value, "growth rate of the variance of the deformation"),
             "gamma2_error": ((), found.error, "its error"),
+            "length": ((), length.value, "extrapolation length of the limits"),
+            "length_error": ((), length.error, "its error"),
         },
     )
 
