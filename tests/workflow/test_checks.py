@@ -209,15 +209,20 @@ def exceedances(bias=1e-3, bias_error=1e-3):
                 coords=duration | {"limit": limit},
             )
         )
-    return xr.Dataset({"gamma2": 0.25, "gamma2_error": 1e-3}), runs
+    constants = {"gamma2": 0.25, "gamma2_error": 1e-3, "length": 0.3, "length_error": 0.02}
+    return xr.Dataset(constants), runs
 
 
-def test_difference_of_formula_and_monte_carlo():
-    """Is what it was made to be; its error has both parts."""
+def test_differences_of_formulas_and_monte_carlo():
+    """Are what they were made to be; their errors have both parts."""
     result = deformation(*exceedances())
     assert np.allclose(result["difference"], 0.1)
     parts = np.hypot(result["probability_error"], 2e-3)
     assert np.allclose(result["difference_error"], parts)
+    farther = brownian_crossing(1.3 / 0.5, TAU)
+    assert np.allclose(result["corrected"].sel(limit=1), farther)
+    less = farther - brownian_crossing(1.32 / 0.5, TAU)
+    assert np.all(result["corrected_error"].sel(limit=1) >= less)
 
 
 def test_a_large_bias_of_the_deformation_fails():
