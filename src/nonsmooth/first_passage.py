@@ -26,9 +26,13 @@ _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what gr
 # last time over first time, of a contour; while the probability rises, and the rise then
 _WINDOW, _NARROW, _GROWTH = 20.0, 2.5, 1e4
 _NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
-# after the rise the transform grows at most by exp(_TAME |z| t) where |z| t > _FAR, on the
-# asymptotes of the contours
-_TAME, _FAR, _ASYMPTOTE = 0.06, 6.0, np.pi - 0.9
+# Off the axis the transform may grow, and does so like exp(|z| t) where paths run almost as given.
+# A contour has its arms at such an angle to the left of the vertical that the growth takes at most
+# some share of the decay of exp(z t): of a hyperbola, whose angle is the first, for |z| t > _FAR; of
+# a contour through a saddle, beyond the saddle. Not looked at is where exp(z t) < exp(-_NEGLIGIBLY).
+_ARMS = (0.67, 0.2)
+_STEEPEST = 0.05
+_TAME, _FAR, _TAMED, _NEGLIGIBLY = 0.1, 6.0, 0.3, 30.0
 _LAST = 1e-12  # terms of a contour through a saddle, relative to the first
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
 _ROUNDING = 1e-13
@@ -129,55 +133,75 @@ class _Saddles:
         z, and the standard deviation along a contour through it, for each time.
     bound : numpy.ndarray, shape (k,)
         Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
-    growth : numpy.ndarray, shape (k,)
-        Largest log |F(z)| / |z| t far out on the asymptotes of a hyperbola.
+    tilt : numpy.ndarray, shape (k,)
+        Angle to the vertical of the arms of a contour through it.
+    rising : numpy.ndarray of bool, shape (k,)
+        Whether the probability is small or the transform grows too fast for a hyperbola.
     """
 
     place: np.ndarray
     width: np.ndarray
     bound: np.ndarray
-    growth: np.ndarray
-
-    @property
-    def rising(self):
-        """Whether the probability is small or the transform grows too fast for a hyperbola."""
-        return (self.bound < np.log(_RISEN)) | (self.growth > _TAME)
+    tilt: np.ndarray
+    rising: np.ndarray
 
 
 def _saddles(scene, lower, upper, times):
     """Find them by a spline of the transform on the axis."""
     first, last = np.log([0.1 / times[-1], _LARGEST / times[0]])
-    log_z, log_F = np.arange(first, last + _AXIS, _AXIS), []
+    log_z, log_F, arms = np.arange(first, last + _AXIS, _AXIS), [], []
     for z in np.exp(log_z):
         # the saddle of the time t is where z t = d log F / d log z, which is less than log F
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
         grid = ordinates(
-            scene, _LEVELS[1][0], depth / z, _reach(scene, depth / z, depth / 2), _DEPTH + depth
+            scene,
+            _LEVELS[1][0],
+            depth / z,
+            _reach(scene, depth / z, depth / 2),
+            _DEPTH + depth,
+            distances=(-lower, upper),
         )
         value = first_passage(grid, z, lower, upper).real
         if value < _ROUNDED:
             break
         log_F.append(np.log(value))
+        arms.append(
+            [
+                np.log(abs(first_passage(grid, z * np.exp(1j * (np.pi / 2 + arm)), lower, upper)))
+                for arm in _ARMS
+            ]
+        )
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing)
+        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing, nothing > 0)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
     z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
-    # as if -log F were a power of z about each z
-    power = np.divide(slope, cumulant, out=np.ones_like(slope), where=cumulant < 0)
-    growth = cumulant / z * np.cos(power * _ASYMPTOTE)
-    bound, place, width, grows = [], [], [], []
+    radii = np.exp(log_z[: len(log_F)])
+    growth = np.array(arms)
+    bound, place, width, tilt, rising = [], [], [], [], []
+
+    def tame(arm, share, t, least):
+        decay = radii * t * np.sin(_ARMS[arm])
+        seen = (radii > least) & (decay < _NEGLIGIBLY)
+        return np.all(growth[seen, arm] <= share * decay[seen])
+
     for t in times:
         bound.append(np.min(z * t + cumulant))
-        grows.append(np.max(growth[z * t > _FAR], initial=0.0) / t)
+        rising.append(bound[-1] < np.log(_RISEN) or not tame(0, _TAME, t, _FAR / t))
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
+        fitting = [arm for k, arm in enumerate(_ARMS) if tame(k, _TAMED, t, z[best])]
+        tilt.append(max(fitting, default=_STEEPEST))
         # second derivative in z of the exponent, log z among it
         width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
     return _Saddles(
-        np.array(place), np.array(width), np.maximum.accumulate(bound), np.array(grows)
+        np.array(place),
+        np.array(width),
+        np.maximum.accumulate(bound),
+        np.array(tilt),
+        np.array(rising),
     )
 
 
@@ -206,7 +230,9 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     def transform(where):
         rarity = -saddles.bound[where][0]
         reach = _reach(scene, times[where][-1], rarity)
-        grid = ordinates(scene, degree, times[where][0], reach, _DEPTH + rarity)
+        grid = ordinates(
+            scene, degree, times[where][0], reach, _DEPTH + rarity, distances=(-lower, upper)
+        )
         return lambda z: first_passage(grid, z, lower, upper)
 
     def around_poles(where, first=0.0):
@@ -217,7 +243,8 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
 
     for here in _windows(begins, rises, (times, _NARROW), (np.exp(saddles.bound), _GROWTH)):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
-        contour = through_saddle(saddles.place[last], saddles.width[last], spacing)
+        tilt = np.min(saddles.tilt[here])
+        contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
         found[0, here] = _probability(transform(here), contour, times[here])
     for here in _windows(rises, len(times), (times, _WINDOW)):
         found[0, here] = _probability(transform(here), around_poles(here), times[here])
