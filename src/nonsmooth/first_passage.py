@@ -28,9 +28,9 @@ _WINDOW, _NARROW, _GROWTH = 20.0, 2.5, 1e4
 _NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
 # Off the axis the transform may grow, and does so like exp(|z| t) where paths run almost as given.
 # A contour has its arms at such an angle to the left of the vertical that the growth takes at most
-# some share of the decay of exp(z t): of a hyperbola, whose angle is the first, for |z| t > _FAR; of
-# a contour through a saddle, beyond the saddle. Not looked at is where exp(z t) < exp(-_NEGLIGIBLY).
-_ARMS = (0.67, 0.2)
+# some share of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola,
+# whose angle is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is where exp(z t) < exp(-_NEGLIGIBLY).
+_ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.05
 _TAME, _FAR, _TAMED, _NEGLIGIBLY = 0.1, 6.0, 0.3, 30.0
 _LAST = 1e-12  # terms of a contour through a saddle, relative to the first
@@ -182,18 +182,18 @@ def _saddles(scene, lower, upper, times):
     growth = np.array(arms)
     bound, place, width, tilt, rising = [], [], [], [], []
 
-    def tame(arm, share, t, least):
-        decay = radii * t * np.sin(_ARMS[arm])
-        seen = (radii > least) & (decay < _NEGLIGIBLY)
-        return np.all(growth[seen, arm] <= share * decay[seen])
+    def tame(count, share, t, least):
+        decay = radii[:, None] * t * np.sin(_ARMS[:count])
+        seen = (radii[:, None] > least) & (decay < _NEGLIGIBLY)
+        return np.all((growth[:, :count] <= share * decay)[seen])
 
     for t in times:
         bound.append(np.min(z * t + cumulant))
-        rising.append(bound[-1] < np.log(_RISEN) or not tame(0, _TAME, t, _FAR / t))
+        rising.append(bound[-1] < np.log(_RISEN) or not tame(len(_ARMS), _TAME, t, _FAR / t))
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
-        fitting = [arm for k, arm in enumerate(_ARMS) if tame(k, _TAMED, t, z[best])]
-        tilt.append(max(fitting, default=_STEEPEST))
+        fitting = [k for k in (1, 2) if z[best] < radii[-1] and tame(k, _TAMED, t, z[best])]
+        tilt.append(_ARMS[max(fitting) - 1] if fitting else _STEEPEST)
         # second derivative in z of the exponent, log z among it
         width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
     return _Saddles(
