@@ -31,7 +31,7 @@ _NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first,
 # some share of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola,
 # whose angle is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is where exp(z t) < exp(-_NEGLIGIBLY).
 _ARMS = (0.2, 0.4, 0.67)
-_STEEPEST = 0.05
+_STEEPEST = 0.0
 _TAME, _FAR, _TAMED, _NEGLIGIBLY = 0.1, 6.0, 0.3, 30.0
 _LAST = 1e-12  # terms of a contour through a saddle, relative to the first
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula

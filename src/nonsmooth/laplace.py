@@ -105,6 +105,8 @@ def through_saddle(saddle, width, spacing, tilt):
     """
     # a normal integrand sampled at 0.85 standard deviations, a pole at 0 at a quarter of the saddle
     near = spacing * min(0.85 * width, 0.25 * saddle)
+    # steep arms leave less room beside them in which F does not grow
+    near *= min(1.0, 0.45 + tilt / 0.7)
     step = near / (saddle * np.cos(tilt))
     u = (np.arange(int(_FARTHEST / step)) + 0.5) * step
     bend = np.sin(1j * u - tilt)
