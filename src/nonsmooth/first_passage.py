@@ -32,7 +32,7 @@ _NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first,
 # whose angle is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is where exp(z t) < exp(-_NEGLIGIBLY).
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
-_TAME, _FAR, _TAMED, _NEGLIGIBLY = 0.1, 6.0, 0.3, 30.0
+_TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
 _LAST = 1e-12  # terms of a contour through a saddle, relative to the first
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
 _ROUNDING = 1e-13
@@ -185,7 +185,7 @@ def _saddles(scene, lower, upper, times):
     def tame(count, share, t, least):
         decay = radii[:, None] * t * np.sin(_ARMS[:count])
         seen = (radii[:, None] > least) & (decay < _NEGLIGIBLY)
-        return np.all((growth[:, :count] <= share * decay)[seen])
+        return np.all((growth[:, :count] <= _HARMLESS + share * decay)[seen])
 
     for t in times:
         bound.append(np.min(z * t + cumulant))
