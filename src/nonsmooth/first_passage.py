@@ -11,10 +11,12 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
+from nonsmooth import models
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.expressions import vectorised
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
-from nonsmooth.spectral import applies
+from nonsmooth.spectral import applies, potential
 from nonsmooth.transport import first_passage
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
@@ -33,10 +35,11 @@ _NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first,
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
 _TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
-_LAST = 1e-12  # terms of a contour through a saddle, relative to the first
+_LAST, _MOST = 1e-12, 80  # terms of a contour through a saddle, relative to the first; their number
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
 _ROUNDING = 1e-13
 _SMALL = 1e-3  # survival probabilities below get contours of their own
+_TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
 _UNDERFLOW, _ROUNDED = 1e-300, 1e-70
 _AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
@@ -75,17 +78,23 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"the spectral method needs the state (y) and white noise, not "
             f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
         )
+    if _start_depth(scene) > _FARTHEST:
+        raise SceneError(
+            f"the start y = {scene.start['y']:g} is too far in the tails, where the modes of the "
+            "transport equation have no digits; start nearer or use method='monte_carlo'"
+        )
     try:
         return _refined(scene, lower, upper, times, tol)
     except np.linalg.LinAlgError as error:
         raise ToleranceError(
-            "the modes of the transport equation are not finite, as where g has a pole or the "
-            f"start is far in the tails ({error}); use method='monte_carlo'"
+            f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
+            "use method='monte_carlo'"
         ) from None
 
 
 def _refined(scene, lower, upper, times, tol):
     saddles = _saddles(scene, lower, upper, times)
+    worst = np.inf
     first = 0 if tol >= _LOOSE else 1
     solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[first])
     for level in _LEVELS[first + 1 :]:
@@ -98,18 +107,28 @@ def _refined(scene, lower, upper, times, tol):
         least = error.min(axis=0)
         error = np.where(error > 1e-12, least + 1e-15, error)
         if np.all(error <= tol):
+            return {
+                "probability": solution[0],
+                "probability_error": error[0],
+                "survival": solution[1],
+                "survival_error": error[1],
+            }
+        if not error.max() < worst / 2:  # rounding: finer grids do not help
             break
-    else:
-        raise ToleranceError(
-            f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
-            "loosen tol"
-        )
-    return {
-        "probability": solution[0],
-        "probability_error": error[0],
-        "survival": solution[1],
-        "survival_error": error[1],
-    }
+        worst = error.max()
+    cure = "loosen tol"
+    if _start_depth(scene) > _TAIL:
+        cure += f", start nearer to the bulk than y = {scene.start['y']:g}, or use "
+        cure += "method='monte_carlo'"
+    raise ToleranceError(
+        f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; {cure}"
+    )
+
+
+def _start_depth(scene):
+    """Logarithm of the largest invariant density over that at the start."""
+    energy, _ = potential(scene)
+    return float(vectorised(energy, (models.y,))(scene.start.get("y", 0.0)))
 
 
 def _largest_nearby(errors, values, times):
@@ -165,12 +184,7 @@ def _saddles(scene, lower, upper, times):
         if value < _ROUNDED:
             break
         log_F.append(np.log(value))
-        arms.append(
-            [
-                np.log(abs(first_passage(grid, z * np.exp(1j * (np.pi / 2 + arm)), lower, upper)))
-                for arm in _ARMS
-            ]
-        )
+        arms.append([_size(grid, z * np.exp(1j * (np.pi / 2 + arm)), lower, upper) for arm in _ARMS])
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
         return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing, nothing > 0)
@@ -203,6 +217,14 @@ def _saddles(scene, lower, upper, times):
         np.array(tilt),
         np.array(rising),
     )
+
+
+def _size(grid, z, lower, upper):
+    """log |F|; infinite where it cannot be told."""
+    try:
+        return np.log(abs(first_passage(grid, z, lower, upper)))
+    except np.linalg.LinAlgError:
+        return np.inf
 
 
 def _reach(scene, time, depth):
@@ -265,7 +287,7 @@ def _probability(transform, contour, times):
         term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
         if len(values) == 1:
             largest = term
-        elif term < _LAST * largest:
+        elif term < _LAST * largest or len(values) == _MOST:
             break
     return contour.until(len(values)).invert(np.array(values), times)
 
