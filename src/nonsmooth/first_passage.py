@@ -25,8 +25,8 @@ _LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.
 _LOOSE = 1e-4  # tolerance that the first levels may meet
 _PER_DECADE = 12  # nodes more for each decade of times
 _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
-# last time over first time, of a contour; while the probability rises, and the rise then
-_WINDOW, _NARROW, _GROWTH = 20.0, 2.5, 1e4
+# last time over first time, of a contour, at most and at least; while the probability rises, and the rise then
+_WINDOW, _SHORTEST, _NARROW, _GROWTH = 20.0, 3.0, 2.5, 1e4
 _NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
 # Off the axis the transform may grow, and does so like exp(|z| t) where paths run almost as given.
 # A contour has its arms at such an angle to the left of the vertical that the growth takes at most
@@ -113,7 +113,7 @@ def _refined(scene, lower, upper, times, tol):
                 "survival": solution[1],
                 "survival_error": error[1],
             }
-        if not error.max() < worst / 2:  # rounding: finer grids do not help
+        if not error.max() < worst:  # rounding: finer grids do not help
             break
         worst = error.max()
     cure = "loosen tol"
@@ -259,7 +259,7 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
 
     def around_poles(where, first=0.0):
         """Contour to the right of the poles, of which `first` is the largest."""
-        begin, end = times[where][0], max(times[where][-1], 1.01 * times[where][0])
+        begin, end = times[where][0], max(times[where][-1], _SHORTEST * times[where][0])
         nodes = round(count + _PER_DECADE * np.log10(end / begin))
         return hyperbola(begin, end, nodes, _SECTOR, first)
 
