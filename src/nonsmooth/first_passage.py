@@ -184,7 +184,9 @@ def _saddles(scene, lower, upper, times):
         if value < _ROUNDED:
             break
         log_F.append(np.log(value))
-        arms.append([_size(grid, z * np.exp(1j * (np.pi / 2 + arm)), lower, upper) for arm in _ARMS])
+        arms.append(
+            [_size(grid, z * np.exp(1j * (np.pi / 2 + arm)), lower, upper) for arm in _ARMS]
+        )
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
         return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing, nothing > 0)

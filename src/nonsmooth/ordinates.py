@@ -77,6 +77,21 @@ class Ordinates:
                 masses[inner, None] * values[inner],
             )
             return solution
+        return self.regular(z, values) + (masses @ values / z if z != 0 else 0.0)
+
+    def regular(self, z, values):
+        """Solve (z - A) u = f in even functions but for E f / z: what is finite as z -> 0.
+
+        Parameters
+        ----------
+        z, values
+            As of `resolvent`.
+
+        Returns
+        -------
+        numpy.ndarray, shape (k, c)
+        """
+        masses, stiffness = self.masses, self.stiffness[EVEN]
         # the difference to the value at the likeliest node, and that value from the mean: what is
         # left of stiffness is regular, however small z
         pin = np.argmax(masses)
@@ -86,8 +101,7 @@ class Ordinates:
         matrix = stiffness[np.ix_(rest, rest)] + z * (np.diag(weights) - np.outer(weights, weights))
         difference = np.zeros(values.shape, np.result_type(values, z, float))
         difference[rest] = _solve_scaled(matrix, weights[:, None] * (values[rest] - mean))
-        level = (mean / z if z != 0 else 0.0) - masses @ difference
-        return difference + level
+        return difference - masses @ difference
 
 
 def _solve_scaled(matrix, right):
@@ -213,7 +227,12 @@ def _edges(scene, depth, kinks, switches, time, reach, deepest, grading, distanc
         lower, upper = (min(distances),) * 2 if scene.is_odd() else distances
         distance = np.where(flow > 0, upper, lower)
         share = np.clip((deepest - depth(y)) / _DIGITS, 0.1, 1.0)
-        return _CROSSING * scene.noise.sigma * np.sqrt(distance / np.maximum(np.abs(flow),1e-300)) / share
+        return (
+            _CROSSING
+            * scene.noise.sigma
+            * np.sqrt(distance / np.maximum(np.abs(flow), 1e-300))
+            / share
+        )
 
     edges = np.concatenate([[-end, 0.0, end], kinks, zeros, *others])
     edges = np.unique(edges[np.abs(edges) <= end])
