@@ -25,26 +25,28 @@ _LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.
 _LOOSE = 1e-4  # tolerance that the first levels may meet
 _PER_DECADE = 12  # nodes more for each decade of times
 _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
-# last time over first time, of a contour, at most and at least; while the probability rises, and the rise then
+# last time over first time, of a contour, at most and at least; while the probability rises, and
+# the rise then
 _WINDOW, _SHORTEST, _NARROW, _GROWTH = 20.0, 3.0, 2.5, 1e4
 _NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
-# Off the axis the transform may grow, and does so like exp(|z| t) where paths run almost as given.
-# A contour has its arms at such an angle to the left of the vertical that the growth takes at most
-# some share of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola,
-# whose angle is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is where exp(z t) < exp(-_NEGLIGIBLY).
+# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of a
+# contour have such an angle to the left of the vertical that the growth takes at most some share
+# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, whose angle
+# is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is
+# where exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
 _TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
 _LAST, _MOST = 1e-12, 80  # terms of a contour through a saddle, relative to the first; their number
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
-_ROUNDING = 1e-13
+_ROUNDING = 1e-14
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
 _UNDERFLOW, _ROUNDED = 1e-300, 1e-70
-_AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
+_AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
 _DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
-_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z in the search for saddles
+_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z of the spline
 
 
 def spectral_crossing(scene, lower, upper, times, tol):
@@ -174,7 +176,7 @@ def _saddles(scene, lower, upper, times):
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
         grid = ordinates(
             scene,
-            _LEVELS[1][0],
+            _COARSE,
             depth / z,
             _reach(scene, depth / z, depth / 2),
             _DEPTH + depth,
@@ -222,7 +224,7 @@ def _saddles(scene, lower, upper, times):
 
 
 def _size(grid, z, lower, upper):
-    """log |F|; infinite where it cannot be told."""
+    """Logarithm of |F|; infinite where it cannot be told."""
     try:
         return np.log(abs(first_passage(grid, z, lower, upper)))
     except np.linalg.LinAlgError:

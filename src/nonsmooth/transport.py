@@ -173,7 +173,7 @@ def first_passage(grid, z, lower, upper):
 
 
 def _of_one_wall(wall, opposite, distance, leaving, entering, right):
-    """The same where the other wall is infinitely far.
+    """Sum the modes where the other wall is infinitely far.
 
     The solution is continued from Re z > 0, where modes decay as they leave. Beyond, those that the
     end of the grid reflects may grow: they belong to a wall by the sign of their flux <phi, g phi>,
