@@ -200,9 +200,9 @@ class TestSpectral:
             scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
         sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
         bias = np.abs(sample.step_bias) + sample.step_bias_error
-        found = exact(0.6, [2.0], 1, scene, tol=1e-6)
+        found = exact(0.6, [2.0], 1, scene, tol=1e-4)
         gap = np.abs(sample.probability - found.probability)
-        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-4
 
     @pytest.mark.parametrize(("p", "tol"), [(1e4, 1e-7), (1e6, 1e-6)])
     def test_late_times_of_one_wall(self, p, tol):

@@ -20,6 +20,7 @@ _DEEPEST = 40.0  # the grid ends where the density has fallen by exp(-40)
 _STEEPEST = 12.0  # logarithm of the ratio of the densities at the ends of an element
 _GRADING = 3.0
 _FINEST = 0.1  # width at a zero of g; the error is of the order of its cube
+# width relative to the spread of velocities on the way to a wall; depth over which all digits count
 _CROSSING, _DIGITS = 3.0, 26.0
 _PASSING = 1.0  # width at the start; the solution is smooth there
 _REACH = 12.0  # velocities reached within a time t are these many times sigma sqrt(t)
