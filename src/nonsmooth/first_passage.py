@@ -11,31 +11,42 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
+from nonsmooth import models
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.expressions import vectorised
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
-from nonsmooth.spectral import applies
+from nonsmooth.spectral import applies, potential
 from nonsmooth.transport import first_passage
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
 # rises; more nodes, of larger real part, would only make the rounding errors grow
-_LEVELS = ((4, 6, 1.2), (7, 9, 0.85), (9, 11, 0.75), (11, 12, 0.7), (14, 13, 0.65))
+_LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.65))
 _LOOSE = 1e-4  # tolerance that the first levels may meet
-_PER_DECADE = 10  # nodes more for each decade of times
-_SECTOR = 0.3  # half angle about the negative axis, of the poles
-# last time over first time, of a contour; while the probability rises, and the rise then
-_WINDOW, _NARROW, _GROWTH = 5.0, 2.5, 300.0
-_NEGLIGIBLE, _RISEN = 1e-14, 0.95  # bounds of the probability; below the first, it is taken as 0
-_LATER = 2.0  # the end of the rise, relative to the last time whose bound is below _RISEN
-_FINELY = 0.7  # grading of the elements while the probability rises
-_LAST = 1e-15  # terms of a contour through a saddle, relative to the first
+_PER_DECADE = 12  # nodes more for each decade of times
+_SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
+# last time over first time, of a contour, at most and at least; while the probability rises, and
+# the rise then
+_WINDOW, _SHORTEST, _NARROW, _GROWTH = 20.0, 3.0, 2.5, 1e4
+_NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
+# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of
+# a contour have such an angle to the left of the vertical that the growth takes at most some share
+# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, at the
+# last angle, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is
+# where exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
+_ARMS = (0.2, 0.4, 0.67)
+_STEEPEST = 0.0
+_TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
+_LAST, _MOST = 1e-12, 80  # terms of a contour through a saddle, relative to the first; their number
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
-_ROUNDING = 1e-13
+_ROUNDING = 1e-14
 _SMALL = 1e-3  # survival probabilities below get contours of their own
+_TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
 _UNDERFLOW, _ROUNDED = 1e-300, 1e-70
-_AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
+_AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
-_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z in the search for saddles
+_DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
+_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z of the spline
 
 
 def spectral_crossing(scene, lower, upper, times, tol):
@@ -69,17 +80,23 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"the spectral method needs the state (y) and white noise, not "
             f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
         )
+    if _start_depth(scene) > _FARTHEST:
+        raise SceneError(
+            f"the start y = {scene.start['y']:g} is too far in the tails, where the modes of the "
+            "transport equation have no digits; start nearer or use method='monte_carlo'"
+        )
     try:
         return _refined(scene, lower, upper, times, tol)
     except np.linalg.LinAlgError as error:
         raise ToleranceError(
-            "the modes of the transport equation are not finite, as where g has a pole or the "
-            f"start is far in the tails ({error}); use method='monte_carlo'"
+            f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
+            "use method='monte_carlo'"
         ) from None
 
 
 def _refined(scene, lower, upper, times, tol):
     saddles = _saddles(scene, lower, upper, times)
+    worst = np.inf
     first = 0 if tol >= _LOOSE else 1
     solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[first])
     for level in _LEVELS[first + 1 :]:
@@ -92,18 +109,28 @@ def _refined(scene, lower, upper, times, tol):
         least = error.min(axis=0)
         error = np.where(error > 1e-12, least + 1e-15, error)
         if np.all(error <= tol):
+            return {
+                "probability": solution[0],
+                "probability_error": error[0],
+                "survival": solution[1],
+                "survival_error": error[1],
+            }
+        if not error.max() < worst:  # rounding: finer grids do not help
             break
-    else:
-        raise ToleranceError(
-            f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
-            "loosen tol"
-        )
-    return {
-        "probability": solution[0],
-        "probability_error": error[0],
-        "survival": solution[1],
-        "survival_error": error[1],
-    }
+        worst = error.max()
+    cure = "loosen tol"
+    if _start_depth(scene) > _TAIL:
+        cure += f", start nearer to the bulk than y = {scene.start['y']:g}, or use "
+        cure += "method='monte_carlo'"
+    raise ToleranceError(
+        f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; {cure}"
+    )
+
+
+def _start_depth(scene):
+    """Logarithm of the largest invariant density over that at the start."""
+    energy, _ = potential(scene)
+    return float(vectorised(energy, (models.y,))(scene.start.get("y", 0.0)))
 
 
 def _largest_nearby(errors, values, times):
@@ -127,42 +154,81 @@ class _Saddles:
         z, and the standard deviation along a contour through it, for each time.
     bound : numpy.ndarray, shape (k,)
         Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
+    tilt : numpy.ndarray, shape (k,)
+        Angle to the vertical of the arms of a contour through it.
+    rising : numpy.ndarray of bool, shape (k,)
+        Whether the probability is small or the transform grows too fast for a hyperbola.
     """
 
     place: np.ndarray
     width: np.ndarray
     bound: np.ndarray
+    tilt: np.ndarray
+    rising: np.ndarray
 
 
 def _saddles(scene, lower, upper, times):
     """Find them by a spline of the transform on the axis."""
     first, last = np.log([0.1 / times[-1], _LARGEST / times[0]])
-    log_z, log_F = np.arange(first, last + _AXIS, _AXIS), []
+    log_z, log_F, arms = np.arange(first, last + _AXIS, _AXIS), [], []
     for z in np.exp(log_z):
         # the saddle of the time t is where z t = d log F / d log z, which is less than log F
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
         grid = ordinates(
-            scene, _LEVELS[1][0], depth / z, _FINELY, _reach(scene, depth / z, depth / 2)
+            scene,
+            _COARSE,
+            depth / z,
+            _reach(scene, depth / z, depth / 2),
+            _DEPTH + depth,
+            distances=(-lower, upper),
         )
         value = first_passage(grid, z, lower, upper).real
         if value < _ROUNDED:
             break
         log_F.append(np.log(value))
+        arms.append(
+            [_size(grid, z * np.exp(1j * (np.pi / 2 + arm)), lower, upper) for arm in _ARMS]
+        )
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED))
+        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing, nothing > 0)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
     z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
-    bound, place, width = [], [], []
+    radii = np.exp(log_z[: len(log_F)])
+    growth = np.array(arms)
+    bound, place, width, tilt, rising = [], [], [], [], []
+
+    def tame(count, share, t, least):
+        decay = radii[:, None] * t * np.sin(_ARMS[:count])
+        seen = (radii[:, None] > least) & (decay < _NEGLIGIBLY)
+        return np.all((growth[:, :count] <= _HARMLESS + share * decay)[seen])
+
     for t in times:
         bound.append(np.min(z * t + cumulant))
+        rising.append(bound[-1] < np.log(_RISEN) or not tame(len(_ARMS), _TAME, t, _FAR / t))
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
+        fitting = [k for k in (1, 2) if z[best] < radii[-1] and tame(k, _TAMED, t, z[best])]
+        tilt.append(_ARMS[max(fitting) - 1] if fitting else _STEEPEST)
         # second derivative in z of the exponent, log z among it
         width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
-    return _Saddles(np.array(place), np.array(width), np.maximum.accumulate(bound))
+    return _Saddles(
+        np.array(place),
+        np.array(width),
+        np.maximum.accumulate(bound),
+        np.array(tilt),
+        np.array(rising),
+    )
+
+
+def _size(grid, z, lower, upper):
+    """Logarithm of |F|; infinite where it cannot be told."""
+    try:
+        return np.log(abs(first_passage(grid, z, lower, upper)))
+    except np.linalg.LinAlgError:
+        return np.inf
 
 
 def _reach(scene, time, depth):
@@ -183,26 +249,29 @@ def _windows(first, end, *growing):
 
 def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     """Probability and survival probability, shape (2, k)."""
-    begins, rises = np.searchsorted(saddles.bound, np.log([_NEGLIGIBLE, _RISEN]))
-    if rises > begins:  # contours around the poles need some time more
-        rises = max(rises, np.searchsorted(times, _LATER * times[rises - 1]))
+    begins = np.searchsorted(saddles.bound, np.log(_NEGLIGIBLE))
+    rises = max(begins, np.max(np.flatnonzero(saddles.rising) + 1, initial=0))
     found = np.zeros((2, len(times)))
 
-    def transform(where, **graded):
-        reach = _reach(scene, times[where][-1], -saddles.bound[where][0])
-        grid = ordinates(scene, degree, times[where][0], reach=reach, **graded)
+    def transform(where):
+        rarity = -saddles.bound[where][0]
+        reach = _reach(scene, times[where][-1], rarity)
+        grid = ordinates(
+            scene, degree, times[where][0], reach, _DEPTH + rarity, distances=(-lower, upper)
+        )
         return lambda z: first_passage(grid, z, lower, upper)
 
     def around_poles(where, first=0.0):
         """Contour to the right of the poles, of which `first` is the largest."""
-        begin, end = times[where][0], max(times[where][-1], 1.01 * times[where][0])
+        begin, end = times[where][0], max(times[where][-1], _SHORTEST * times[where][0])
         nodes = round(count + _PER_DECADE * np.log10(end / begin))
         return hyperbola(begin, end, nodes, _SECTOR, first)
 
     for here in _windows(begins, rises, (times, _NARROW), (np.exp(saddles.bound), _GROWTH)):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
-        contour = through_saddle(saddles.place[last], saddles.width[last], spacing)
-        found[0, here] = _probability(transform(here, grading=_FINELY), contour, times[here])
+        tilt = np.min(saddles.tilt[here])
+        contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
+        found[0, here] = _probability(transform(here), contour, times[here])
     for here in _windows(rises, len(times), (times, _WINDOW)):
         found[0, here] = _probability(transform(here), around_poles(here), times[here])
     found[1] = 1 - found[0]
@@ -222,7 +291,7 @@ def _probability(transform, contour, times):
         term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
         if len(values) == 1:
             largest = term
-        elif term < _LAST * largest:
+        elif term < _LAST * largest or len(values) == _MOST:
             break
     return contour.until(len(values)).invert(np.array(values), times)
 

@@ -13,7 +13,8 @@ import numpy as np
 from nonsmooth.poisson import EVEN, ODD
 
 _ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
-_INSTANT = 1e-3  # lengths over which a mode decays at once, relative to the longest
+_SEPARATED, _POWERS = 1e3, 6  # slow eigenvalue over the others; steps until it is exact
+_DIRECTED = 0.1  # flux of a wave that only one wall sends, relative to the largest possible
 
 
 @dataclass(frozen=True)
@@ -52,17 +53,19 @@ def modes(grid, z):
     g = grid.g[moving]
     source = np.zeros((len(grid.g), len(moving)))
     source[moving, np.arange(len(moving))] = g
-    even = grid.resolvent(z, EVEN, source)
     balance = np.sqrt(np.abs(g) / grid.masses[moving])
     if not grid.mirrored:
-        return _of_all(grid, even, balance)
+        return _of_all(grid, grid.resolvent(z, EVEN, source), balance)
+    even, flux = grid.regular(z, source), grid.masses @ source
     odd = grid.resolvent(z, ODD, source)
-    squares, odd_parts = _eigen(odd[moving] @ even[moving], balance * np.sqrt(np.abs(g)))
+    squares, odd_parts, means = _pairs(
+        odd[moving] @ even[moving], odd[moving].sum(axis=1), flux, z, balance * np.sqrt(np.abs(g))
+    )
     # at real z, rounding may make the smallest negative: modes that never decay, instead of at once
     fast = np.abs(squares) < _ROUNDING * np.max(np.abs(squares))
     rates = 1 / np.sqrt(np.where(fast, np.abs(squares), squares).astype(complex))
     rates = np.where(rates.real < 0, -rates, rates)
-    even_parts = rates * (even @ odd_parts)
+    even_parts = rates * (even @ odd_parts + means)
     even_start = grid.start[EVEN] @ even_parts
     odd_start = grid.start[ODD] @ (rates * (odd @ even_parts[moving]))
     leaving = np.sign(g)[:, None] * odd_parts
@@ -74,6 +77,39 @@ def modes(grid, z):
     )
 
 
+def _pairs(regular, drift, flux, z, balance):
+    """Eigenpairs of regular + drift flux / z, and flux @ vectors / z.
+
+    Where the slow mode, about drift, is far above the others, its eigenvalue would drown them in
+    rounding. They are those of the inverse plus 1/s, s of the size of `regular`, by the formula of
+    Sherman and Morrison; the slow one follows by two steps of the power method.
+    """
+    vast = flux @ drift / z
+    size = 2 * np.linalg.norm(regular / balance[:, None] * balance, 2)
+    if abs(vast) < _SEPARATED * size:
+        values, vectors = _eigen(regular + np.outer(drift, flux / z), balance)
+        return values, vectors, flux @ vectors / z
+    bounded = np.linalg.inv(np.eye(len(drift)) + regular / size)
+    lost, left = bounded @ drift, flux @ bounded
+    shifted = size * (
+        np.eye(len(drift)) - bounded + np.outer(lost, left) / (z * size + left @ drift)
+    )
+    values, vectors = (part.astype(complex) for part in _eigen(shifted, balance))
+    slow = np.argmin(np.abs(values - size))
+    inverses = 1 / values - 1 / size
+    inverses[slow] = 1 / vast
+    values = 1 / inverses
+    weighted = drift / balance**2
+    means = weighted @ (vectors * values - regular @ vectors) / (weighted @ drift)
+    mode = drift
+    for _ in range(_POWERS):
+        mode = regular @ mode + drift * (flux @ mode / z)
+        values[slow] = flux @ mode / (flux @ drift)
+        mode = mode / values[slow]
+    vectors[:, slow], means[slow] = mode, flux @ mode / z
+    return values, vectors, means
+
+
 def _eigen(matrix, balance):
     values, vectors = np.linalg.eig(matrix / balance[:, None] * balance)
     return values, vectors * balance[:, None]
@@ -82,21 +118,18 @@ def _eigen(matrix, balance):
 def _of_all(grid, resolvent, balance):
     moving = grid.moving
     inverses, vectors = _eigen(resolvent[moving], balance)
-    up = grid.g[moving] > 0
-    order = np.argsort(-inverses.real)
-    upper, lower = np.split(order, [np.count_nonzero(up)])
-    # as many modes decay from each wall as nodes leave there, as long as Re z > 0; beyond, the slow
-    # pair waves, and on a grid a few that decay at once may stray to the other side
     rates = 1 / inverses
     start = grid.start[EVEN] @ (rates * (resolvent @ vectors))
     vectors = np.sqrt(grid.masses[moving])[:, None] * vectors
-    instant = np.abs(inverses) < _INSTANT * np.max(np.abs(inverses))
+    up = grid.g[moving] > 0
+    decay = rates.real > 0
 
     def decaying(chosen, rates, leaves):
-        away = np.where(instant & (rates.real < 0), np.abs(rates), rates)[chosen]
-        return Modes(away, vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen])
+        return Modes(
+            rates[chosen], vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen]
+        )
 
-    return decaying(upper, rates, up), decaying(lower, -rates, ~up)
+    return decaying(decay, rates, up), decaying(~decay, -rates, ~up)
 
 
 def first_passage(grid, z, lower, upper):
@@ -114,28 +147,44 @@ def first_passage(grid, z, lower, upper):
     complex
     """
     above, below = modes(grid, z)
-    weights = np.sqrt(grid.masses[grid.moving])
+    g, weights = grid.g[grid.moving], np.sqrt(grid.masses[grid.moving])
+    up, down = (slice(None),) * 2 if grid.mirrored else (g > 0, g < 0)
     if np.isinf(lower):
-        right = weights if grid.mirrored else weights[grid.g[grid.moving] > 0]
-        return (above.start * np.exp(-above.rates * upper)) @ np.linalg.solve(above.own, right)
+        return _of_one_wall(above, below, upper, np.abs(g[up]), np.abs(g[down]), weights[up])
     if np.isinf(upper):
-        right = weights if grid.mirrored else weights[grid.g[grid.moving] < 0]
-        return (below.start * np.exp(below.rates * lower)) @ np.linalg.solve(below.own, right)
+        return _of_one_wall(below, above, -lower, np.abs(g[down]), np.abs(g[up]), weights[down])
     far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
     if grid.mirrored:  # both walls see the same
         strength = np.linalg.solve(above.own + above.other * far_above, weights)
         strengths = strength, strength
     else:
-        up = grid.g[grid.moving] > 0
         strengths = np.split(
             np.linalg.solve(
                 np.block(
                     [[above.own, below.other * far_below], [above.other * far_above, below.own]]
                 ),
-                np.concatenate([weights[up], weights[~up]]),
+                np.concatenate([weights[up], weights[down]]),
             ),
-            [np.count_nonzero(up)],
+            [len(above.rates)],
         )
     return (above.start * np.exp(-above.rates * upper)) @ strengths[0] + (
         below.start * np.exp(below.rates * lower)
     ) @ strengths[1]
+
+
+def _of_one_wall(wall, opposite, distance, leaving, entering, right):
+    """Sum the modes where the other wall is infinitely far.
+
+    The solution is continued from Re z > 0, where modes decay as they leave. Beyond, those that the
+    end of the grid reflects may grow: they belong to a wall by the sign of their flux <phi, g phi>,
+    and what they carry is left out like all that is beyond the grid.
+    """
+    own = np.hstack([wall.own, opposite.other])
+    other = np.hstack([wall.other, opposite.own])
+    out, back = leaving @ np.abs(own) ** 2, entering @ np.abs(other) ** 2
+    flux = (out - back) / (out + back)
+    decays = np.repeat([1.0, -1.0], [len(wall.rates), len(opposite.rates)])
+    order = np.argsort(-np.where(np.abs(flux) > _DIRECTED, flux, _DIRECTED * decays), stable=True)
+    chosen = order[: len(right)]
+    carried = np.append(wall.start * np.exp(-wall.rates * distance), np.zeros(len(opposite.rates)))
+    return carried[chosen] @ np.linalg.solve(own[:, chosen], right)
