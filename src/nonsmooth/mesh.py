@@ -25,7 +25,7 @@ _DRIVEN, _TRANSPORTED = (
 )  # elements of a variable without kinks, so that nodes are even in number
 _DEPTH = 20.0  # of a usual box, in units of the temperature
 _BEND = 1.0  # by so many temperatures may a potential bend in an element, beyond a parabola
-_LAYERS = {eta: 2}  # with many variables, if not 1
+_LAYERS = {eta: 2, y: 2}  # with many variables, if not 1
 _SAMPLES, _MOST = 16, 9  # points at which the bend is measured; most parts of an element
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from nonsmooth import mesh
+from nonsmooth.combination import Combination
 from nonsmooth.errors import ToleranceError
 from nonsmooth.estimate import require
 from nonsmooth.generator import evaluate
@@ -23,10 +24,11 @@ _ITERATION = 0.1  # what a tenth of the residual may change, relative to the tol
 SPARE = 10.0  # the density outside the box is exp(-SPARE) smaller than the tolerance
 _NORMAL_TAIL = 3.29  # standard deviations outside which a normal variable has the mass _TAIL
 _TAIL = 1e-3  # mass outside a box, from which the box of the wanted depth is extrapolated
-_COARSE, _FINEST = {2: 2, 3: 1, 4: 1}, 9  # levels, the coarse one by the number of variables
+_COARSE = {2: 2, 3: 1, 4: 1}  # level of the coarsest grid by the number of variables
 _STIFF = {True: 1e12, False: 1e7}  # n that stands for inf, for elastic walls and otherwise
 _LONG = 100.0  # correlation time of a slow scene, relative to that of its damping
 _LARGEST = {2: 120_000, 3: 600_000, 4: 2_500_000}  # grid points
+_WORK = 8  # largest grids that may be spent on one value
 
 
 @dataclass(frozen=True)
@@ -184,58 +186,38 @@ def growth_to(scene, tol):
 
 
 def _refined(scene, tol):
-    """gamma^2, its error, a grid somewhat coarser than the last, and the residual."""
+    """gamma^2, its error, the dearest grid, and the residual."""
     coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE[len(scene.state)])
     base, accuracy, residual = _iterated(scene, coarse, tol)
-    many = len(coarse.levels) > 2
-    share = tol / (4 if many else 1) / len(coarse.levels)
-    grid, changes, expected = coarse, {}, base
-    for symbol in coarse.levels:
-        trial, last = coarse, base
-        while trial.levels[symbol] < _FINEST:
-            trial, previous = trial.raised(symbol), last
-            last = growth_rate(scene, trial, accuracy)
-            changes[symbol] = last - previous
-            if abs(changes[symbol]) < share * abs(last):
-                break
-        # what the last step changed is the error of the one before, which will do
-        # where grids are dear
-        grid = grid.raised(symbol, trial.levels[symbol] - many - coarse.levels[symbol])
-        expected += previous - base
-    while not affordable(scene, grid):
-        grid = raised(grid, -1)
-    apart = sum(abs(change) for change in changes.values())
-    below = raised(grid, -1)
+    larger = growth_rate(scene, replace(coarse, margin=_MARGIN), accuracy)
+    symbols = tuple(coarse.levels)
 
-    def truncation(where, value):
-        larger = replace(where, margin=_MARGIN)
-        return 2 * abs(growth_rate(scene, larger, accuracy) - value) + residual * abs(value)
+    def grid(index):
+        return replace(coarse, levels=dict(zip(symbols, index, strict=True)))
 
-    if many:
-        # a second grid is dear: twice what single variables still change, and an eighth
-        # of what they did together beyond the sum of what they did alone
-        rest = truncation(below, growth_rate(scene, below, accuracy))
-        last = growth_rate(scene, grid, accuracy)
-        error = 2 * apart + abs(last - expected) / 8 + rest
-        if error <= tol * abs(last):
-            return last, error, below, accuracy
-        below, grid = grid, raised(grid)
-    else:
-        last = growth_rate(scene, below, accuracy)
-    while affordable(scene, grid):
-        previous, last = last, growth_rate(scene, grid, accuracy)
-        error = max(abs(last - previous), apart)
-        if error <= tol * abs(last):
-            error += truncation(grid, last)
-            if error <= tol * abs(last):
-                break
-        below, grid = grid, raised(grid)
-    if error > tol * abs(last):
-        time = abs(correlation_time(scene, below, last, accuracy))
+    combination = Combination(
+        tuple(coarse.levels.values()),
+        lambda index: growth_rate(scene, grid(index), accuracy),
+        lambda index: points(scene, grid(index)),
+    )
+    largest = _LARGEST[len(symbols)]
+    left = _WORK * largest
+    while True:
+        value = combination.value
+        error = combination.error + 2 * abs(larger - base) + residual * abs(value)
+        if error <= tol * abs(value):
+            break
+        cost = combination.refine(min(largest, left))
+        left -= cost
+        if not cost:
+            break
+    best = grid(combination.dearest())
+    if error > tol * abs(value):
+        time = abs(correlation_time(scene, best, value, accuracy))
         slow = time > _LONG * max(scene.damping, 1 / scene.damping)
         cure = f"the scene mixes slowly, g stays correlated for some {time:.0e}; loosen tol"
-        require(False, last, error, tol, cure if slow else "loosen tol")
-    return last, error, below, accuracy
+        require(False, value, error, tol, cure if slow else "loosen tol")
+    return value, error, best, accuracy
 
 
 def _iterated(scene, grid, tol):
@@ -263,7 +245,12 @@ def raised(grid, by=1):
     return grid
 
 
+def points(scene, grid):
+    """Return the number of nodes of a grid."""
+    axes = mesh.axes(scene, grid.ends, grid.levels)
+    return math.prod(len(axis.nodes) for axis in axes.values())
+
+
 def affordable(scene, grid):
     """Whether a grid is small enough to be solved on."""
-    axes = mesh.axes(scene, grid.ends, grid.levels)
-    return math.prod(len(axis.nodes) for axis in axes.values()) <= _LARGEST[len(axes)]
+    return points(scene, grid) <= _LARGEST[len(grid.levels)]
