@@ -13,6 +13,7 @@ import math
 
 _ALONE = 2  # levels each variable is raised by itself before surpluses are believed to decay
 _RELAPSE = 0.25  # of the surplus before the last, if the last is small by chance
+_MIXED = 0.25  # of a surplus is left if another variable is raised too
 
 
 class Combination:
@@ -62,18 +63,21 @@ class Combination:
         return _moved(index, k, -1) if index[k] > self._lowest[k] else None
 
     def _expected(self, index):
-        """Bound a surplus by those of its parents, as if surpluses hardly decayed."""
+        """Bound a surplus by those of its parents, as if surpluses hardly decayed.
+
+        A single one of them may be small by chance.
+        """
         raised = [k for k in self._axes if index[k] > self._lowest[k]]
         if len(raised) == 1 and index[raised[0]] - self._lowest[raised[0]] <= _ALONE:
             return math.inf
         bounds = []
         for k in raised:
             parent = self._parent(index, k)
-            before = self._parent(parent, k)
             bounds.append(abs(self._surplus[parent]))
+            before = self._parent(parent, k)
             if before and before != self._lowest:
-                bounds[-1] = max(bounds[-1], _RELAPSE * abs(self._surplus[before]))
-        return min(bounds)
+                bounds.append(_RELAPSE * abs(self._surplus[before]))
+        return max(bounds) * (1.0 if len(raised) == 1 else _MIXED)
 
     @property
     def error(self):

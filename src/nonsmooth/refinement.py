@@ -14,6 +14,7 @@ from nonsmooth.combination import Combination
 from nonsmooth.errors import ToleranceError
 from nonsmooth.estimate import require
 from nonsmooth.generator import evaluate
+from nonsmooth.models import x, y
 from nonsmooth.poisson import EVEN, ODD, Direct, Split
 
 _MARGIN = 0.15  # of the box, to see whether it matters
@@ -190,17 +191,18 @@ def _refined(scene, tol):
     coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE[len(scene.state)])
     base, accuracy, residual = _iterated(scene, coarse, tol)
     larger = growth_rate(scene, replace(coarse, margin=_MARGIN), accuracy)
-    symbols = tuple(coarse.levels)
+    directions = _directions(coarse)
 
     def grid(index):
-        return replace(coarse, levels=dict(zip(symbols, index, strict=True)))
+        levels = {s: level for part, level in zip(directions, index, strict=True) for s in part}
+        return replace(coarse, levels=levels)
 
     combination = Combination(
-        tuple(coarse.levels.values()),
+        tuple(coarse.levels[part[0]] for part in directions),
         lambda index: growth_rate(scene, grid(index), accuracy),
         lambda index: points(scene, grid(index)),
     )
-    largest = _LARGEST[len(symbols)]
+    largest = _LARGEST[len(coarse.levels)]
     left = _WORK * largest
     while True:
         value = combination.value
@@ -218,6 +220,16 @@ def _refined(scene, tol):
         cure = f"the scene mixes slowly, g stays correlated for some {time:.0e}; loosen tol"
         require(False, value, error, tol, cure if slow else "loosen tol")
     return value, error, best, accuracy
+
+
+def _directions(grid):
+    """Group the variables that are refined together.
+
+    Those of the oscillator are, beside noise of its own: transport mixes them, so that what they
+    change together is no smaller than what one of them changes.
+    """
+    noise = [(symbol,) for symbol in grid.levels if symbol not in (y, x)]
+    return [*noise, tuple(symbol for symbol in grid.levels if symbol in (y, x))]
 
 
 def _iterated(scene, grid, tol):
