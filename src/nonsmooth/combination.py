@@ -11,7 +11,6 @@ Gerstner & Griebel, Computing 71 (2003) 65-87.
 import itertools
 import math
 
-_ALONE = 2  # levels each variable is raised by itself before surpluses are believed to decay
 _RELAPSE = 0.25  # of the surplus before the last, if the last is small by chance
 _MIXED = 0.25  # of a surplus is left if another variable is raised too
 
@@ -23,6 +22,8 @@ class Combination:
     ----------
     lowest : tuple of int
         Level of each variable on the coarsest grid.
+    coarsest : float
+        The functional there.
     evaluate : callable
         Takes an index to the functional on its grid.
     cost : callable
@@ -34,14 +35,14 @@ class Combination:
         The functional.
     """
 
-    def __init__(self, lowest, evaluate, cost):
+    def __init__(self, lowest, coarsest, evaluate, cost):
         self._lowest, self._evaluate, self._cost = lowest, evaluate, cost
         self._values, self._surplus = {}, {}
         self.value, self._missing = 0.0, {}
-        self._add(lowest)
+        self._add(lowest, coarsest)
 
-    def _add(self, index):
-        self._values[index] = self._evaluate(index)
+    def _add(self, index, functional):
+        self._values[index] = functional
         below = itertools.product(*((0, 1) if self._parent(index, k) else (0,) for k in self._axes))
         self._surplus[index] = sum(
             (-1) ** sum(step) * self._values[tuple(i - s for i, s in zip(index, step, strict=True))]
@@ -68,14 +69,14 @@ class Combination:
         A single one of them may be small by chance.
         """
         raised = [k for k in self._axes if index[k] > self._lowest[k]]
-        if len(raised) == 1 and index[raised[0]] - self._lowest[raised[0]] <= _ALONE:
-            return math.inf
         bounds = []
         for k in raised:
             parent = self._parent(index, k)
+            if parent == self._lowest:
+                return math.inf
             bounds.append(abs(self._surplus[parent]))
             before = self._parent(parent, k)
-            if before and before != self._lowest:
+            if before is not None and before != self._lowest:
                 bounds.append(_RELAPSE * abs(self._surplus[before]))
         return max(bounds) * (1.0 if len(raised) == 1 else _MIXED)
 
@@ -97,7 +98,7 @@ class Combination:
         if not within:
             return 0.0
         best = max(within, key=lambda index: (self._missing[index] / costs[index], -costs[index]))
-        self._add(best)
+        self._add(best, self._evaluate(best))
         return costs[best]
 
     def dearest(self):

@@ -1,7 +1,7 @@
 """gamma^2 of scenes with several variables, on tensor grids that are refined until it settles.
 
-How fine each variable must be is found on coarse grids, one variable at a time; two grids that are
-fine in all of them, one level apart, give the value and its error.
+Many grids, of which none is fine in all variables, are combined (`combination`); what the grids
+beyond would add is the error.
 """
 
 import math
@@ -25,7 +25,8 @@ _ITERATION = 0.1  # what a tenth of the residual may change, relative to the tol
 SPARE = 10.0  # the density outside the box is exp(-SPARE) smaller than the tolerance
 _NORMAL_TAIL = 3.29  # standard deviations outside which a normal variable has the mass _TAIL
 _TAIL = 1e-3  # mass outside a box, from which the box of the wanted depth is extrapolated
-_COARSE = {2: 2, 3: 1, 4: 1}  # level of the coarsest grid by the number of variables
+# levels by the number of variables: of the grids for box and shift, of the coarsest for gamma^2
+_FITTED, _COARSE = {2: 2, 3: 1, 4: 0}, {2: 2, 3: 1, 4: 1}
 _STIFF = {True: 1e12, False: 1e7}  # n that stands for inf, for elastic walls and otherwise
 _LONG = 100.0  # correlation time of a slow scene, relative to that of its damping
 _LARGEST = {2: 120_000, 3: 600_000, 4: 2_500_000}  # grid points
@@ -161,8 +162,8 @@ def growth_to(scene, tol):
     Returns
     -------
     value, error : float
-        The error is the difference of the last two grids or, if larger, the sum of what the
-        variables contribute each for itself; to it come the box, the residuals and n.
+        The error is what grids beyond those combined may add, see `Combination.error`; to it come
+        the box, the residuals and n.
 
     Raises
     ------
@@ -187,8 +188,10 @@ def growth_to(scene, tol):
 
 
 def _refined(scene, tol):
-    """gamma^2, its error, the dearest grid, and the residual."""
-    coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE[len(scene.state)])
+    """gamma^2, its error, the dearest of the combined grids, and the residual."""
+    count = len(scene.state)
+    coarse = fitted(scene, math.log(1 / tol) + SPARE, _FITTED[count])
+    coarse = raised(coarse, _COARSE[count] - _FITTED[count])
     base, accuracy, residual = _iterated(scene, coarse, tol)
     larger = growth_rate(scene, replace(coarse, margin=_MARGIN), accuracy)
     directions = _directions(coarse)
@@ -199,10 +202,11 @@ def _refined(scene, tol):
 
     combination = Combination(
         tuple(coarse.levels[part[0]] for part in directions),
+        base,
         lambda index: growth_rate(scene, grid(index), accuracy),
         lambda index: points(scene, grid(index)),
     )
-    largest = _LARGEST[len(coarse.levels)]
+    largest = _LARGEST[count]
     left = _WORK * largest
     while True:
         value = combination.value
