@@ -107,4 +107,4 @@ class Combination:
 
 
 def _moved(index, k, by):
-    return index[:k] + (index[k] + by,) + index[k + 1 :]
+    return (*index[:k], index[k] + by, *index[k + 1 :])

@@ -144,7 +144,7 @@ def _is_smooth(scene, symbol, end):
 
 
 def _holding(scene):
-    """Forcing that holds the oscillator at a wall, beyond which paths at rest are no more; or 0."""
+    """Return the forcing that holds the oscillator at rest at a wall, 0 if there is none."""
     if scene.mechanics.argument != x:
         return 0.0
     slope = vectorised(sympy.diff(scene.potential_expression, x), (x,))
