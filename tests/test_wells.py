@@ -74,7 +74,6 @@ def test_rate_of_jumps_between_two_wells():
 def test_a_rate_that_is_out_of_reach_is_refused(monkeypatch):
     """Thirty kT: one transition in 1e12; the message tells so."""
     monkeypatch.setattr(refinement, "_LARGEST", {2: 10_000})
-    monkeypatch.setattr(refinement, "_FINEST", 4)
     scene = ns.Scene("obstacle", potential="x**2/2 + 15*exp(-4*x**2)", observable="x")
     with pytest.raises(ToleranceError, match=r"mixes slowly, g stays correlated for some \de\+"):
         ns.asymptotic_variance(scene, tol=1e-3)

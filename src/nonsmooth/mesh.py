@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import sympy
 
 from nonsmooth.elements import continuous, discontinuous
 from nonsmooth.expressions import vectorised
@@ -16,6 +17,7 @@ ORDER = (
 )  # of the axes: the forcing first, for each value of which mechanics is solved
 _INWARD = 4.0  # each element next to a kink is so many times smaller than its neighbour
 _WITHIN = np.array([0.5, 0.75])  # edges within an elastic wall, relative to its depth
+_STOPPING = 1 / 64  # finest element within a layer that only stops, relative to its thickness
 _WIDEST = 2.2  # no element is wider than the half width divided by this
 _DRIVEN, _TRANSPORTED = (
     3,
@@ -23,6 +25,7 @@ _DRIVEN, _TRANSPORTED = (
 )  # elements of a variable without kinks, so that nodes are even in number
 _DEPTH = 20.0  # of a usual box, in units of the temperature
 _BEND = 1.0  # by so many temperatures may a potential bend in an element, beyond a parabola
+_LAYERS = {eta: 2, y: 2}  # with many variables, if not 1
 _SAMPLES, _MOST = 16, 9  # points at which the bend is measured; most parts of an element
 
 
@@ -140,6 +143,14 @@ def _is_smooth(scene, symbol, end):
     return knots(scene).get(symbol, end) >= end
 
 
+def _holding(scene):
+    """Return the forcing that holds the oscillator at rest at a wall, 0 if there is none."""
+    if scene.mechanics.argument != x:
+        return 0.0
+    slope = vectorised(sympy.diff(scene.potential_expression, x), (x,))
+    return float(slope(np.array(1.0)) - slope(np.array(-1.0))) / 2
+
+
 def _has_walls(scene, end):
     return scene.mechanics.argument == x and not _is_smooth(scene, x, end)
 
@@ -161,6 +172,9 @@ def edges(scene, symbol, end, layers):
     numpy.ndarray
     """
     if _is_smooth(scene, symbol, end):
+        holding = _holding(scene) if symbol == eta else 0.0
+        if symbol != scene.noise.driven and 0 < holding < end:
+            return _mirrored(np.array([holding, end]))
         count = _DRIVEN if symbol == scene.noise.driven else _TRANSPORTED
         return np.linspace(-end, end, count + 1)
     knot = knots(scene)[symbol]
@@ -178,8 +192,11 @@ def edges(scene, symbol, end, layers):
         if len(scene.state) <= 2:  # elements are dear with more
             outward = np.append(outward, beyond * _WITHIN)
     else:
-        outward = _towards(beyond, finest)  # a layer that only stops is thin
-    inward = _towards(knot, min(finest, knot / 2)) if symbol != y else np.array([knot / 2, knot])
+        outward = _towards(beyond, min(finest, beyond * _STOPPING))
+    if symbol == y:  # within, velocities follow the forcing up to the edge
+        inward = _towards(knot, knot * _STOPPING)
+    else:
+        inward = _towards(knot, min(finest, knot / 2))
     return _mirrored(np.concatenate([knot + outward, knot - inward, [knot]]))
 
 
@@ -275,7 +292,7 @@ def axes(scene, ends, levels, margin=0.0):
     for symbol in variables(scene):
         level, end = levels[symbol], ends[symbol]
         # with many variables, layers are dear
-        layers = 2 + (level if len(levels) <= 2 else level // 2)
+        layers = 2 + level if len(levels) <= 2 else _LAYERS.get(symbol, 1)
         where = edges(scene, symbol, end, layers)
         if symbol in wells:
             potential, temperature = wells[symbol]

@@ -1,7 +1,7 @@
 """gamma^2 of scenes with several variables, on tensor grids that are refined until it settles.
 
-How fine each variable must be is found on coarse grids, one variable at a time; two grids that are
-fine in all of them, one level apart, give the value and its error.
+Many grids, of which none is fine in all variables, are combined (`combination`); what the grids
+beyond would add is the error.
 """
 
 import math
@@ -10,9 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from nonsmooth import mesh
+from nonsmooth.combination import Combination
 from nonsmooth.errors import ToleranceError
 from nonsmooth.estimate import require
 from nonsmooth.generator import evaluate
+from nonsmooth.models import x, y
 from nonsmooth.poisson import EVEN, ODD, Direct, Split
 
 _MARGIN = 0.15  # of the box, to see whether it matters
@@ -23,10 +25,12 @@ _ITERATION = 0.1  # what a tenth of the residual may change, relative to the tol
 SPARE = 10.0  # the density outside the box is exp(-SPARE) smaller than the tolerance
 _NORMAL_TAIL = 3.29  # standard deviations outside which a normal variable has the mass _TAIL
 _TAIL = 1e-3  # mass outside a box, from which the box of the wanted depth is extrapolated
-_COARSE, _FINEST = {2: 2, 3: 1, 4: 1}, 9  # levels, the coarse one by the number of variables
+# levels by the number of variables: of the grids for box and shift, of the coarsest for gamma^2
+_FITTED, _COARSE = {2: 2, 3: 1, 4: 0}, {2: 2, 3: 1, 4: 1}
 _STIFF = {True: 1e12, False: 1e7}  # n that stands for inf, for elastic walls and otherwise
 _LONG = 100.0  # correlation time of a slow scene, relative to that of its damping
 _LARGEST = {2: 120_000, 3: 600_000, 4: 2_500_000}  # grid points
+_WORK = 8  # largest grids that may be spent on one value
 
 
 @dataclass(frozen=True)
@@ -158,8 +162,8 @@ def growth_to(scene, tol):
     Returns
     -------
     value, error : float
-        The error is the difference of the last two grids or, if larger, the sum of what the
-        variables contribute each for itself; to it come the box, the residuals and n.
+        The error is what grids beyond those combined may add, see `Combination.error`; to it come
+        the box, the residuals and n.
 
     Raises
     ------
@@ -184,58 +188,52 @@ def growth_to(scene, tol):
 
 
 def _refined(scene, tol):
-    """gamma^2, its error, a grid somewhat coarser than the last, and the residual."""
-    coarse = fitted(scene, math.log(1 / tol) + SPARE, _COARSE[len(scene.state)])
+    """gamma^2, its error, the dearest of the combined grids, and the residual."""
+    count = len(scene.state)
+    coarse = fitted(scene, math.log(1 / tol) + SPARE, _FITTED[count])
+    coarse = raised(coarse, _COARSE[count] - _FITTED[count])
     base, accuracy, residual = _iterated(scene, coarse, tol)
-    many = len(coarse.levels) > 2
-    share = tol / (4 if many else 1) / len(coarse.levels)
-    grid, changes, expected = coarse, {}, base
-    for symbol in coarse.levels:
-        trial, last = coarse, base
-        while trial.levels[symbol] < _FINEST:
-            trial, previous = trial.raised(symbol), last
-            last = growth_rate(scene, trial, accuracy)
-            changes[symbol] = last - previous
-            if abs(changes[symbol]) < share * abs(last):
-                break
-        # what the last step changed is the error of the one before, which will do
-        # where grids are dear
-        grid = grid.raised(symbol, trial.levels[symbol] - many - coarse.levels[symbol])
-        expected += previous - base
-    while not affordable(scene, grid):
-        grid = raised(grid, -1)
-    apart = sum(abs(change) for change in changes.values())
-    below = raised(grid, -1)
+    larger = growth_rate(scene, replace(coarse, margin=_MARGIN), accuracy)
+    directions = _directions(coarse)
 
-    def truncation(where, value):
-        larger = replace(where, margin=_MARGIN)
-        return 2 * abs(growth_rate(scene, larger, accuracy) - value) + residual * abs(value)
+    def grid(index):
+        levels = {s: level for part, level in zip(directions, index, strict=True) for s in part}
+        return replace(coarse, levels=levels)
 
-    if many:
-        # a second grid is dear: twice what single variables still change, and an eighth
-        # of what they did together beyond the sum of what they did alone
-        rest = truncation(below, growth_rate(scene, below, accuracy))
-        last = growth_rate(scene, grid, accuracy)
-        error = 2 * apart + abs(last - expected) / 8 + rest
-        if error <= tol * abs(last):
-            return last, error, below, accuracy
-        below, grid = grid, raised(grid)
-    else:
-        last = growth_rate(scene, below, accuracy)
-    while affordable(scene, grid):
-        previous, last = last, growth_rate(scene, grid, accuracy)
-        error = max(abs(last - previous), apart)
-        if error <= tol * abs(last):
-            error += truncation(grid, last)
-            if error <= tol * abs(last):
-                break
-        below, grid = grid, raised(grid)
-    if error > tol * abs(last):
-        time = abs(correlation_time(scene, below, last, accuracy))
+    combination = Combination(
+        tuple(coarse.levels[part[0]] for part in directions),
+        base,
+        lambda index: growth_rate(scene, grid(index), accuracy),
+        lambda index: points(scene, grid(index)),
+    )
+    largest = _LARGEST[count]
+    left = _WORK * largest
+    while True:
+        value = combination.value
+        error = combination.error + 2 * abs(larger - base) + residual * abs(value)
+        if error <= tol * abs(value):
+            break
+        cost = combination.refine(min(largest, left))
+        left -= cost
+        if not cost:
+            break
+    best = grid(combination.dearest())
+    if error > tol * abs(value):
+        time = abs(correlation_time(scene, best, value, accuracy))
         slow = time > _LONG * max(scene.damping, 1 / scene.damping)
         cure = f"the scene mixes slowly, g stays correlated for some {time:.0e}; loosen tol"
-        require(False, last, error, tol, cure if slow else "loosen tol")
-    return last, error, below, accuracy
+        require(False, value, error, tol, cure if slow else "loosen tol")
+    return value, error, best, accuracy
+
+
+def _directions(grid):
+    """Group the variables that are refined together.
+
+    Those of the oscillator are, beside noise of its own: transport mixes them, so that what they
+    change together is no smaller than what one of them changes.
+    """
+    noise = [(symbol,) for symbol in grid.levels if symbol not in (y, x)]
+    return [*noise, tuple(symbol for symbol in grid.levels if symbol in (y, x))]
 
 
 def _iterated(scene, grid, tol):
@@ -263,7 +261,12 @@ def raised(grid, by=1):
     return grid
 
 
+def points(scene, grid):
+    """Return the number of nodes of a grid."""
+    axes = mesh.axes(scene, grid.ends, grid.levels)
+    return math.prod(len(axis.nodes) for axis in axes.values())
+
+
 def affordable(scene, grid):
     """Whether a grid is small enough to be solved on."""
-    axes = mesh.axes(scene, grid.ends, grid.levels)
-    return math.prod(len(axis.nodes) for axis in axes.values()) <= _LARGEST[len(axes)]
+    return points(scene, grid) <= _LARGEST[len(grid.levels)]
