@@ -12,7 +12,7 @@ import xarray as xr
 from nonsmooth import schemes, spectral
 from nonsmooth.brownian import asymptotic_crossing
 from nonsmooth.corrected import corrected_crossing
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.first_passage import spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
@@ -21,19 +21,30 @@ from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
     PILOT_PATHS,
+    SIGMAS,
+    SPREAD_SHARE,
     coarse_step,
     coupled,
     parallel,
+    paths_for,
     refined_step,
     require_count,
     require_finite,
     require_increasing,
     require_positive,
+    require_possible,
     require_resolved,
     step_bias,
     variance_of_fine,
 )
 from nonsmooth.variance import limit_variance, stationary_mean
+
+_CONFIDENCE = 0.997  # of the pilot's limits of the probability
+# Seconds on one core, as measured: of a step of a path with all pilots, of a run, and of the
+# spectral method for each window of its contours, at tolerances that coarse levels meet or not
+_STEP, _RUN = 4e-9, 0.01
+_COARSE_BIAS = 0.02  # of the coarse step, in W
+_WINDOW, _LOOSE = {True: 0.4, False: 0.85}, 1e-4
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -209,16 +220,19 @@ def crossing_probability(
     p : float
         Scale of the functional central limit theorem, > 0.
     method : {"monte_carlo", "spectral", "asymptotic", "corrected"}, optional
-        ``"spectral"`` is deterministic, for one state variable and white noise: it is taken there
-        unless a parameter of another method is given, and ``"monte_carlo"`` elsewhere.
+        ``"spectral"`` is deterministic, for one state variable and white noise. Unless a method,
+        or a parameter that only one has, is given: there it or, where `tol` is so loose that it
+        should be faster, ``"monte_carlo"``, and if one cannot meet `tol`, the other; elsewhere
+        ``"monte_carlo"``.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`; beyond the
         state y with white noise it needs odd g, order 1 and, with more than two variables,
         constants that are sampled.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
-        given, on the number of paths (two standard errors are at most `tol`) and on the time
-        step (its bias is half). ``"spectral"``: 1e-7 unless given. The formulas have none.
+        given, on the number of paths (three standard errors are at most three quarters of `tol`)
+        and on the time step (its bias is a quarter). ``"spectral"``: 1e-7 unless given. The
+        formulas have none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -259,16 +273,22 @@ def crossing_probability(
         require_positive("tol", tol)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: value for name, value in options.items() if value is not None}
-    if method is None:
-        method = _chosen(scene, given)
-    if method not in METHODS:
-        raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
-    for name in given:
-        if name not in inspect.signature(METHODS[method]).parameters:
-            raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
-    values, attributes = METHODS[method](
-        scene, threshold, horizons, p, seed=seed, threads=threads, **given
-    )
+    failed = []
+    for method in _candidates(scene, horizons, p, given) if method is None else [method]:
+        if method not in METHODS:
+            raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
+        for name in given:
+            if name not in inspect.signature(METHODS[method]).parameters:
+                raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
+        try:
+            values, attributes = METHODS[method](
+                scene, threshold, horizons, p, seed=seed, threads=threads, **given
+            )
+            break
+        except ToleranceError as error:
+            failed.append(error)
+    else:
+        raise failed[0]
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
@@ -276,11 +296,27 @@ def crossing_probability(
     )
 
 
-def _chosen(scene, given):
+def _candidates(scene, horizons, p, given):
+    """Methods that know their error, the one expected to be the fastest first."""
     if "order" in given:
-        return "corrected"
-    sampled = {"step", "paths", "precision"} & given.keys()
-    return "spectral" if spectral.applies(scene) and not sampled else "monte_carlo"
+        return ["corrected"]
+    if {"step", "paths", "precision"} & given.keys() or not spectral.applies(scene):
+        return ["monte_carlo"]
+    if "tol" not in given:
+        return ["spectral"]
+    seconds = {
+        name: expected(scene, horizons, p, given["tol"]) for name, expected in SECONDS.items()
+    }
+    return sorted(seconds, key=seconds.get)
+
+
+def _sampling_seconds(scene, horizons, p, tol):
+    steps = p * horizons[-1] / coarse_step(scene) * max(1.0, (_COARSE_BIAS / tol) ** (2 / 3))
+    return _RUN + _STEP * paths_for(0.5, tol) * steps
+
+
+def _spectral_seconds(scene, horizons, p, tol):
+    return _WINDOW[tol >= _LOOSE] * (1 + np.log(horizons[-1] / horizons[0]) / np.log(5))
 
 
 def _monte_carlo(
@@ -296,15 +332,11 @@ def _monte_carlo(
     precision="float32",
 ):
     """Count paths; the step and the number of paths follow from `tol` unless given."""
-    paths = int(np.ceil(1 / tol**2)) if paths is None else paths
+    problem = (scene, threshold, horizons, p)
+    if step is None or paths is None:
+        step, paths = _planned(*problem, tol, step, paths, labelled(seed, "pilot"), threads)
     require_count("paths", paths)
     fewer = min(paths, max(PILOT_PATHS, paths // 8))
-    problem = (scene, threshold, horizons, p)
-    if step is None:
-        step = coarse_step(scene)
-        bias, error = first_passage_bias(*problem, step, fewer, labelled(seed, "pilot"), threads)
-        worst = np.max(np.abs(bias) + error)
-        step = refined_step(step, worst, tol / 2, schemes.scheme(scene).weak_order(scene))
     require_positive("step", step)
     crossed = first_passage_counts(
         *problem, step, paths, seed, threads=threads, precision=precision
@@ -317,6 +349,40 @@ def _monte_carlo(
     require_resolved(step, variance_of_fine(change)[-1], bias[-1], error[-1])
     values["step_bias"], values["step_bias_error"] = _bias_of_counts(scene, times, passage)
     return values, {"step": step, "paths": paths}
+
+
+def _planned(scene, threshold, horizons, p, tol, step, paths, seed, threads):
+    """Step and number of paths for a tolerance, unless given, from pilots with a coarse step."""
+    times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
+    longest = coarse_step(scene) if step is None else step
+    require_positive("step", longest)
+
+    def pilot(paths):
+        return coupled(scene, times, longest, paths, seed, threads, levels)[1]
+
+    count = min(PILOT_PATHS, paths_for(0.5, tol) if paths is None else paths)
+    require_count("paths", count)
+    passage = pilot(count)
+    if paths is None:
+        crossed = np.sum(passage[0][:, None] <= times, axis=0)
+        # the probability nearest to 1/2 that the pilot does not exclude
+        _, low, high = proportion(crossed, count, _CONFIDENCE)
+        worst = np.clip(0.5, low, high)
+        paths = max(count, paths_for(np.sqrt(np.max(worst * (1 - worst))), tol))
+        require_possible(
+            paths,
+            times[-1] / longest,
+            f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}",
+            tol,
+        )
+    if step is None:
+        if paths // 8 > count:
+            passage = pilot(paths // 8)
+        bias, error = _bias_of_counts(scene, times, passage)
+        worst = np.max(np.abs(bias) + error)
+        order = schemes.scheme(scene).weak_order(scene)
+        step = refined_step(longest, worst, (1 - SPREAD_SHARE) * tol, order)
+    return step, paths
 
 
 def _asymptotic(scene, threshold, horizons, p, seed, threads):
@@ -341,6 +407,10 @@ def _corrected(scene, threshold, horizons, p, seed, threads, order=1):
     value, error = corrected_crossing(scene, *threshold, horizons, p, order, seed, threads)
     return {"probability": value, "probability_error": error}, {}
 
+
+# Expected seconds of the methods that can promise `tol`, of (scene, horizons, p, tol), where the
+# state is y and the noise white: `crossing_probability` tries the fastest first.
+SECONDS = {"spectral": _spectral_seconds, "monte_carlo": _sampling_seconds}
 
 # Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
 # the other parameters of `crossing_probability` that it has; it returns the variables over the
