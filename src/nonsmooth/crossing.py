@@ -42,8 +42,8 @@ from nonsmooth.variance import limit_variance, stationary_mean
 _CONFIDENCE = 0.997  # of the pilot's limits of the probability
 # Seconds on one core, as measured: of a step of a path with all pilots, of a run, and of the
 # spectral method for each window of its contours, at tolerances that coarse levels meet or not
-_STEP, _RUN = 4e-9, 0.01
-_COARSE_BIAS = 0.02  # of the coarse step, in W
+_STEP, _RUN = 2e-9, 0.01
+_COARSE_BIAS = 0.01  # of the coarse step, in W
 _WINDOW, _LOOSE = {True: 0.4, False: 0.85}, 1e-4
 
 DESCRIPTIONS = {
