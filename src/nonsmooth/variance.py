@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
-from nonsmooth import models, quadrature, schemes, spectral, transient, wells
+from nonsmooth import ladder, models, quadrature, schemes, spectral, transient, wells
 from nonsmooth.closed_form import friction_variance
 from nonsmooth.ergodicity import rate_at_infinity
 from nonsmooth.errors import SceneError, ToleranceError
@@ -108,6 +108,8 @@ def _deterministic(scene, tol):
             "take without the velocity; use method='monte_carlo'"
         )
     tol = _EXACT[len(scene.state)] if tol is None else tol
+    if ladder.applies(scene) and (found := ladder.growth_on_ladder(scene, tol)):
+        return *found, "spectral elements"
     if not spectral.applies(scene):
         return *growth_to(scene, tol), "spectral elements"
     if (
