@@ -13,7 +13,7 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.poisson import EVEN, ODD
 
 _WANTED = 6  # eigenvalues computed; the slowest pair may be complex
-_COARSE, _FINEST = 2, 8  # levels
+_COARSE, _FINEST = 1, 8  # levels
 _MARGIN = 0.15  # of the box, to see whether it matters
 # relative; against linear scenes it comes to 2e-12, and what moves eigenvalues that coincide apart
 # to 2e-13
