@@ -214,9 +214,7 @@ def asked_variance(request, tol, **options):
 
 def asked_crossing(request, tol, **options):
     """W over the horizons."""
-    found = ns.crossing_probability(
-        request.scene, **request.given, tol=tol, threads=1, **options
-    )
+    found = ns.crossing_probability(request.scene, **request.given, tol=tol, threads=1, **options)
     return found["probability"].values, found.attrs["method"]
 
 
@@ -553,9 +551,7 @@ QUANTITIES = {
             "plain Monte Carlo": plain_crossing,
         },
     ),
-    "density": Quantity(
-        15, some_density, true_density, over_largest, {"looser": looser()}, {}
-    ),
+    "density": Quantity(15, some_density, true_density, over_largest, {"looser": looser()}, {}),
     "spectral gap": Quantity(
         15,
         some_gap,
@@ -716,7 +712,18 @@ def main(arguments):
             file.flush()
             found.append({"quantity": request.quantity} | summary(rows))
             told = found[-1]
-            if "PROGRESS" in globals(): print(number, request.quantity, len(request.scene.state), request.tol, told["method"], told["seconds"], round(time.process_time()), file=sys.stderr, flush=True)
+            if "PROGRESS" in globals():
+                print(
+                    number,
+                    request.quantity,
+                    len(request.scene.state),
+                    request.tol,
+                    told["method"],
+                    told["seconds"],
+                    round(time.process_time()),
+                    file=sys.stderr,
+                    flush=True,
+                )
             if not (told["error/tol"] <= 1 and told["ratio, bare too"] <= LIMIT):
                 print(*own, told, file=sys.stderr, flush=True)
     print(table(pd.DataFrame(found)).to_string(float_format="{:.3g}".format))

@@ -54,7 +54,8 @@ def asymptotic_variance(scene, tol=None, method=None, seed=0, threads=None):
         Requested relative error; unless given, 1e-10, 1e-6, 2e-4, 1e-2 for one to four state
         variables, and 1e-2 by Monte Carlo.
     method : {"deterministic", "monte_carlo"}, optional
-        Unless given, the one that should be the faster for `tol`, and if it fails, the other.
+        Unless given, the one that should be the faster for `tol` and, if that fails and `tol` is
+        a percent or more, the other.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 
@@ -98,7 +99,7 @@ def _fastest_first(scene, tol):
     tol = _EXACT[many] if tol is None else tol
     if tol >= _FASTER_SAMPLED[many]:
         return ["monte_carlo", "deterministic"]
-    return ["deterministic"] if tol < _LEAST_SAMPLED else ["deterministic", "monte_carlo"]
+    return ["deterministic", "monte_carlo"] if tol >= _SAMPLED else ["deterministic"]
 
 
 def _deterministic(scene, tol):
@@ -283,7 +284,9 @@ def variance(scene, times, tol=None, method=None, seed=0, threads=None):
         tol = _SAMPLED if tol is None else tol
         (w, v), (w_error, v_error), bound = _sampled_moments(scene, times, tol, seed, threads)
     elif method != "deterministic":
-        raise SceneError(f"v(tau) has no method {method!r}; choose 'deterministic' or 'monte_carlo'")
+        raise SceneError(
+            f"v(tau) has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
+        )
     elif solve is None:
         raise SceneError(
             f"v(tau) is solved for one or two state variables and, for two, a finite n, not for "
