@@ -30,6 +30,18 @@ from nonsmooth.growth import growth, integrals
 from nonsmooth.trajectories import SIGMAS, coarse_step, gram, moments
 
 SEED, OUTPUT = 1, Path("results/requests")
+COLUMNS = [
+    "request",
+    "quantity",
+    "variables",
+    "scene",
+    "given",
+    "tol",
+    "kind",
+    "name",
+    "seconds",
+    "error/tol",
+]
 SHORT, REPEATS = 0.2, 3  # seconds of runs that are repeated, and how often they are run
 OVERHEAD = 0.05  # seconds that are added to both times: less is nobody's wait
 LIMIT = 3.0
@@ -135,14 +147,14 @@ def tolerance(rng, scene, ranges):
 
 
 def some_growth(rng):
-    """gamma^2."""
+    """Draw a request for gamma^2."""
     scene = random_scene(rng, variables=pick(rng, ((1,), (2,), (2,), (3, 4))))
     ranges = {1: (1e-10, 1e-2), 2: (1e-6, 3e-2), 3: (4e-2, 1.5e-1), 4: (5e-2, 1.5e-1)}
     return Request("gamma^2", scene, tolerance(rng, scene, ranges))
 
 
 def some_variance(rng):
-    """v(0, tau); the tolerance is relative to g's own scale, the variance at the last time."""
+    """Draw a request for v(0, tau), whose tolerance goes with the size of int g."""
     scene = random_scene(rng, variables=pick(rng, ((1,), (2,), (3, 4))))
     first = log_uniform(rng, 0.5, 5)
     times = np.round(np.geomspace(first, first * log_uniform(rng, 1.5, 20), 4), 3)
@@ -155,7 +167,7 @@ def some_variance(rng):
 
 
 def some_crossing(rng):
-    """W at up to four horizons."""
+    """Draw a request for W at up to four horizons."""
     scene = random_scene(rng, variables=pick(rng, ((1,), (1,), (2, 3, 4))))
     size = math.sqrt(gamma_scale(scene))
     lower, upper = (round(size * log_uniform(rng, 0.7, 3), 4) for _ in range(2))
@@ -170,7 +182,7 @@ def some_crossing(rng):
 
 
 def some_density(rng):
-    """Marginal densities at points within [-1.5, 1.5]."""
+    """Draw a request for the marginal densities within [-1.5, 1.5]."""
     scene = random_scene(rng, True, pick(rng, ((1,), (2,))))
     points = {name: np.linspace(-1.5, 1.5, 31) for name in scene.state}
     ranges = {1: (1e-8, 1e-2), 2: (1e-4, 3e-2)}
@@ -178,13 +190,13 @@ def some_density(rng):
 
 
 def some_gap(rng):
-    """The spectral gap."""
+    """Draw a request for the spectral gap."""
     scene = random_scene(rng, True, pick(rng, ((1,), (2,))))
     return Request("spectral gap", scene, tolerance(rng, scene, {1: (1e-9, 1e-2), 2: (1e-6, 1e-2)}))
 
 
 def some_length(rng):
-    """kappa."""
+    """Draw a request for kappa."""
     scene = random_scene(rng, True, pick(rng, ((1,), (2,))), odd=True)
     size = math.sqrt(gamma_scale(scene))
     ranges = {1: (1e-8, 1e-2), 2: (1e-2, 1e-1)}
@@ -192,7 +204,7 @@ def some_length(rng):
 
 
 def gamma_scale(scene):
-    """A tenth at least of what gamma^2 may be: the size of int g over a time."""
+    """Estimate the variance of int g over ten units of time, divided by them."""
     run = ns.simulate(scene, 10.0, step=0.05, paths=1000, times=[10.0], seed=9)
     return float(f"{max(float(run['variance'][0]) / 10, 1e-6):.2g}")
 
@@ -201,36 +213,36 @@ def gamma_scale(scene):
 
 
 def asked_growth(request, tol, **options):
-    """gamma^2."""
+    """Ask for gamma^2."""
     found = ns.asymptotic_variance(request.scene, tol, threads=1, **options)
     return found.value, found.method
 
 
 def asked_variance(request, tol, **options):
-    """v over the times."""
+    """Ask for v over the times."""
     found = ns.variance(request.scene, request.given["times"], tol, threads=1, **options)
     return found["v"].values, found.attrs["method"]
 
 
 def asked_crossing(request, tol, **options):
-    """W over the horizons."""
+    """Ask for W over the horizons."""
     found = ns.crossing_probability(request.scene, **request.given, tol=tol, threads=1, **options)
     return found["probability"].values, found.attrs["method"]
 
 
 def asked_density(request, tol):
-    """Marginal densities, a row each."""
+    """Ask for the marginal densities, a row each."""
     found = ns.invariant_density(request.scene, tol, request.given["points"])
     return np.array([found[f"density_{name}"] for name in request.scene.state]), "grids"
 
 
 def asked_gap(request, tol):
-    """The gap."""
+    """Ask for the gap."""
     return ns.spectral_gap(request.scene, tol).value, "spectral elements"
 
 
 def asked_length(request, tol):
-    """One kappa."""
+    """Ask for kappa."""
     found = ns.extrapolation_length(request.scene, tol, threads=1)
     return found.value, found.method
 
@@ -249,7 +261,7 @@ ASKED = {
 
 
 def by(method):
-    """A method by its name, where the function takes it."""
+    """Name the method."""
 
     def runs(request):
         yield lambda: request.ask(method=method)[0]
@@ -258,7 +270,7 @@ def by(method):
 
 
 def looser(**options):
-    """The function itself, asked for less."""
+    """Ask for less."""
 
     def runs(request):
         for factor in LOOSER:
@@ -270,7 +282,7 @@ def looser(**options):
 
 
 def one_degree(solve):
-    """A single polynomial degree, where the state is y and the noise white."""
+    """Solve with a single polynomial degree, where the state is y and the noise white."""
 
     def runs(request):
         if spectral.applies(request.scene):
@@ -281,7 +293,7 @@ def one_degree(solve):
 
 
 def one_grid(solve, levels=(0, 1, 2, 3, 4, 5)):
-    """A single tensor grid of the same level in all variables."""
+    """Solve on a single tensor grid, of the same level in all variables."""
 
     def on(request, level):
         depth = math.log(1 / request.tol) + refinement.SPARE
@@ -290,15 +302,14 @@ def one_grid(solve, levels=(0, 1, 2, 3, 4, 5)):
 
     def runs(request):
         if len(request.scene.state) > 1 and "y" in request.scene.state:
-            if math.isfinite(request.scene.n):
-                for level in levels:
-                    yield functools.partial(on, request, level)
+            for level in levels if math.isfinite(request.scene.n) else ():
+                yield functools.partial(on, request, level)
 
     return runs
 
 
 def plain_growth(request):
-    """Monte Carlo without pilots: the paths that three standard errors need, and some steps."""
+    """Sample without pilots: the paths that three standard errors need, and some steps."""
     scene, tol = request.scene, request.tol
 
     def run(share):
@@ -313,7 +324,7 @@ def plain_growth(request):
 
 
 def plain_variance(request):
-    """The same for the variance at times."""
+    """Sample the variance at times in the same way."""
     scene, tol, times = request.scene, request.tol, request.given["times"]
     size = gamma_scale(scene)
 
@@ -330,7 +341,7 @@ def plain_variance(request):
 
 
 def plain_crossing(request):
-    """The same for crossing probabilities; the number of paths knows W."""
+    """Sample crossing probabilities in the same way; the number of paths knows W."""
     scene, tol = request.scene, request.tol
 
     def run(share):
@@ -351,7 +362,7 @@ def plain_paths(deviation, tol):
 
 
 def formula(**options):
-    """A formula for large p, which does not know its distance to the probability."""
+    """Evaluate a formula for large p, which does not know its distance to W."""
 
     def runs(request):
         def run():
@@ -365,33 +376,33 @@ def formula(**options):
 
 
 def moments_on_degree(request, degree):
-    """v by eigenfunctions."""
+    """Expand v in eigenfunctions."""
     return spectral.moments(request.scene, request.given["times"], degree)[1]
 
 
 def growth_on_degree(request, degree):
-    """gamma^2 by eigenfunctions."""
+    """Expand gamma^2 in eigenfunctions."""
     return spectral.asymptotic_variance(request.scene, degree)
 
 
 def gap_on_degree(request, degree):
-    """The gap."""
+    """Compute the gap."""
     return spectral.spectrum(request.scene, degree).rates[1]
 
 
 def growth_on(request, grid):
-    """gamma^2."""
+    """Solve for gamma^2."""
     return refinement.growth_rate(request.scene, grid, 0.02 * request.tol)
 
 
 def moments_on(request, grid):
-    """v by `transient`."""
+    """Solve for v."""
     times = request.given["times"]
     return transient._on(request.scene, grid, times, 0.05 * request.tol * times)[0][1]
 
 
 def gap_on(request, grid):
-    """The gap."""
+    """Compute the gap."""
     return spectral_gap._on(request.scene, grid)[0]
 
 
@@ -400,29 +411,29 @@ def gap_on(request, grid):
 
 @functools.cache
 def known(index):
-    """What the request is judged by; made once."""
+    """Make the reference of a request, once."""
     request = REQUESTS[index]
     return QUANTITIES[request.quantity].reference(request)
 
 
 def reference_of(request):
-    """Values, and what is known of them."""
+    """Look up the reference: values, and the part of the tolerance to which they are known."""
     return known(REQUESTS.index(request))
 
 
 def more_resolved(request):
-    """The same function, asked for a tenth."""
+    """Ask the same function for a tenth."""
     return request.ask(request.tol / FINER)[0], 1 / FINER
 
 
 def sampled(request):
-    """Monte Carlo with other numbers, to a quarter."""
+    """Sample with other random numbers, to a third."""
     tol = request.tol / RESOLVED
     return request.ask(tol, method="monte_carlo", seed=99)[0], 1 / RESOLVED
 
 
 def true_growth(request):
-    """Another method for one and three variables."""
+    """Take another method for one and three variables."""
     scene = request.scene
     many = len(scene.state)
     if many == 1:
@@ -438,7 +449,7 @@ def true_growth(request):
 
 
 def true_variance(request):
-    """More resolved, by the same method or by Monte Carlo."""
+    """Resolve more, by the same method or by Monte Carlo."""
     scene = request.scene
     if len(scene.state) == 1:
         return moments_on_degree(request, 28), 0.0
@@ -448,7 +459,7 @@ def true_variance(request):
 
 
 def true_crossing(request):
-    """By the spectral method, where it is."""
+    """Take the spectral method, where there is one."""
     if spectral.applies(request.scene):
         try:
             return request.ask(min(request.tol / FINER, 1e-6), method="spectral")[0], 1 / FINER
@@ -458,44 +469,44 @@ def true_crossing(request):
 
 
 def true_density(request):
-    """More resolved."""
+    """Resolve more."""
     return request.ask(request.tol / RESOLVED)[0], 1 / RESOLVED
 
 
 def true_gap(request):
-    """More resolved."""
+    """Resolve more."""
     if spectral.applies(request.scene):
         return gap_on_degree(replace_scene(request), 28), 0.0
     return more_resolved(request)
 
 
 def true_length(request):
-    """More resolved."""
+    """Resolve more."""
     return request.ask(request.tol / 3)[0], 1 / 3
 
 
 def replace_scene(request):
-    """The same request of a scene of its own, with nothing cached."""
+    """Make the same request of a scene of its own, with nothing cached."""
     return replace(request, scene=replace(request.scene))
 
 
 def relative(request, values, reference):
-    """Error relative to the reference."""
+    """Measure the error relative to the reference."""
     return abs(values - reference) / abs(reference)
 
 
 def absolute(request, values, reference):
-    """Largest error."""
+    """Measure the largest error."""
     return np.max(np.abs(values - reference))
 
 
 def over_time(request, values, reference):
-    """Largest error of v / tau."""
+    """Measure the largest error of v / tau."""
     return np.max(np.abs(values - reference) / request.given["times"])
 
 
 def over_largest(request, values, reference):
-    """Error relative to the largest value of each density."""
+    """Measure the error relative to the largest value of each density."""
     return np.max(np.abs(values - reference) / np.max(reference, axis=1, keepdims=True))
 
 
@@ -565,7 +576,6 @@ QUANTITIES = {
     ),
 }
 REQUESTS = []
-PROGRESS = 1
 
 
 # Measurement
@@ -586,7 +596,7 @@ def stop(*_):
 
 
 def timed(run, most=math.inf):
-    """Seconds of one core, and the result; None if it is refused or takes more than `most`."""
+    """Return the seconds of one core, and the result: None if refused, or dearer than `most`."""
     seconds, result = [], None
     signal.signal(signal.SIGPROF, stop)
     while not seconds or (seconds[0] < SHORT and len(seconds) < REPEATS):
@@ -607,14 +617,11 @@ def warm(request):
     """Compile what the scene's formulas need."""
     step = coarse_step(request.scene)
     ns.simulate(request.scene, 4 * step, step=step, paths=16, times=[4 * step], threads=1)
-    try:
-        first_passage_counts(request.scene, 1.0, [4 * step], 1.0, step, 16, 0, threads=1)
-    except NonsmoothError:
-        pass
+    first_passage_counts(request.scene, 1.0, [4 * step], 1.0, step, 16, 0, threads=1)
 
 
 def measure(request):
-    """One request: rows of (kind, name, seconds, error over tol); the library's own first."""
+    """Answer a request: rows of (kind, name, seconds, error over tol), the library's own first."""
     warm(request)
     quantity = QUANTITIES[request.quantity]
 
@@ -647,7 +654,7 @@ def measure(request):
 
 
 def summary(rows):
-    """Ratios of the library's time to the least of those whose error is below the tolerance."""
+    """Compare the library's time with the least of those whose error is below the tolerance."""
     _, method, seconds, error = rows[0]
     best = {}
     for kinds in (("stated",), ("stated", "bare")):
@@ -667,7 +674,7 @@ def summary(rows):
 
 
 def table(found):
-    """By quantity."""
+    """Sum up by quantity."""
     lines = {}
     for name, part in [*found.groupby("quantity", sort=False), ("all", found)]:
         lines[name] = {
@@ -700,30 +707,15 @@ def main(arguments):
     found = []
     with (OUTPUT / f"{'_'.join(names) or 'all'}.csv").open("w", newline="") as file:
         lines = csv.writer(file)
-        lines.writerow(
-            ["request", "quantity", "variables", "scene", "given", "tol", "kind", "name"]
-            + ["seconds", "error/tol"]
-        )
+        lines.writerow(COLUMNS)
         for number, request in enumerate(REQUESTS):
             rows = measure(request)
             own = [number, request.quantity, len(request.scene.state), request.scene]
             own += [{k: v for k, v in request.given.items() if k != "points"}, f"{request.tol:.3g}"]
-            lines.writerows(own + [*row[:2], *(f"{x:.4g}" for x in row[2:])] for row in rows)
+            lines.writerows([*own, *row[:2], *(f"{x:.4g}" for x in row[2:])] for row in rows)
             file.flush()
             found.append({"quantity": request.quantity} | summary(rows))
             told = found[-1]
-            if "PROGRESS" in globals():
-                print(
-                    number,
-                    request.quantity,
-                    len(request.scene.state),
-                    request.tol,
-                    told["method"],
-                    told["seconds"],
-                    round(time.process_time()),
-                    file=sys.stderr,
-                    flush=True,
-                )
             if not (told["error/tol"] <= 1 and told["ratio, bare too"] <= LIMIT):
                 print(*own, told, file=sys.stderr, flush=True)
     print(table(pd.DataFrame(found)).to_string(float_format="{:.3g}".format))

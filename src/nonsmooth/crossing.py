@@ -274,14 +274,9 @@ def crossing_probability(
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: value for name, value in options.items() if value is not None}
     failed = []
-    for method in _candidates(scene, horizons, p, given) if method is None else [method]:
-        if method not in METHODS:
-            raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
-        for name in given:
-            if name not in inspect.signature(METHODS[method]).parameters:
-                raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
+    for name in _candidates(scene, horizons, p, given) if method is None else [method]:
         try:
-            values, attributes = METHODS[method](
+            values, attributes = _by(name, given)(
                 scene, threshold, horizons, p, seed=seed, threads=threads, **given
             )
             break
@@ -292,8 +287,18 @@ def crossing_probability(
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
-        attrs={"method": method} | attributes,
+        attrs={"method": name} | attributes,
     )
+
+
+def _by(method, given):
+    """Look up a method, which has to have the parameters that are given."""
+    if method not in METHODS:
+        raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
+    for name in given:
+        if name not in inspect.signature(METHODS[method]).parameters:
+            raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
+    return METHODS[method]
 
 
 def _candidates(scene, horizons, p, given):

@@ -394,7 +394,7 @@ def coarse_step(scene, scheme="strang"):
 
 
 def paths_for(deviation, tol):
-    """Number of paths on whose average, of a given standard deviation, `tol` can be promised."""
+    """Count the paths on whose average, of a given standard deviation, `tol` can be promised."""
     return math.ceil((SIGMAS * deviation / (SPREAD_SHARE * tol)) ** 2)
 
 

@@ -315,7 +315,7 @@ def variance(scene, times, tol=None, method=None, seed=0, threads=None):
 
 
 def _solver(scene):
-    """What solves for w and v with errors, of (scene, times, tol); None if there is nothing."""
+    """Choose what solves for w and v, of (scene, times, tol); None if there is nothing."""
     if spectral.applies(scene):
         return _of_velocity
     if len(scene.state) == 2 and not math.isinf(scene.n) and "y" in scene.state:
