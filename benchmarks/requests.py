@@ -52,7 +52,7 @@ GROWTH_TIMES = (10.0, 60.0, 110.0)
 SPREAD = {"gamma^2": 2.4, "variance": 2.0}  # variance of the estimates times paths, relative
 POTENTIALS = ("x**2/2", "{a}*x**2/2 + {b}*cos(2*x)", "{a}*x**4/4 + x**2/2")
 FINER = 10.0  # of references that are grids
-RESOLVED = 3.0  # of references that are sampled
+RESOLVED = 2.5  # of references that are sampled
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from nonsmooth.panel import STATE, TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
 from nonsmooth.times import equal_steps
 
+MOST_STEPS = 1e13  # of all paths together: hours
 _EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
 
 
@@ -384,7 +385,6 @@ PILOT_PATHS = 4096
 # result in 400 misses it.
 SIGMAS = 3.0
 SPREAD_SHARE = 0.75  # of the tolerance, for the standard errors; least work at the weak order 3/2
-_MOST_STEPS = 1e13  # of all paths together: hours
 
 
 def coarse_step(scene, scheme="strang"):
@@ -398,16 +398,16 @@ def paths_for(deviation, tol):
     return math.ceil((SIGMAS * deviation / (SPREAD_SHARE * tol)) ** 2)
 
 
-def require_possible(paths, steps, what, tol):
-    """Refuse a tolerance that would take more steps than can be waited for.
+def require_possible(paths, steps, what, tol, most=MOST_STEPS):
+    """Refuse a tolerance that would take more steps of all paths together than can be waited for.
 
     Raises
     ------
     ToleranceError
         The message begins with `what`, the best value and its error.
     """
-    if paths * steps > _MOST_STEPS:
-        reachable = tol * math.sqrt(paths * steps / _MOST_STEPS)
+    if paths * steps > most:
+        reachable = tol * math.sqrt(paths * steps / most)
         raise ToleranceError(
             f"{what}; tol = {tol:g} would take Monte Carlo {paths:.1e} paths of {steps:.1e} steps; "
             f"use tol >= {reachable:.1g}"

@@ -17,6 +17,7 @@ from nonsmooth.growth import growth, growth_bias, integrals
 from nonsmooth.refinement import growth_to
 from nonsmooth.streams import labelled
 from nonsmooth.trajectories import (
+    MOST_STEPS,
     PILOT_PATHS,
     SIGMAS,
     coarse_step,
@@ -34,6 +35,7 @@ _VARIANCE = {1: 1e-9, 2: 1e-5}  # absolute, of v(tau)/tau
 _SAMPLED, _LEAST_SAMPLED = 1e-2, 1e-3  # tolerances of Monte Carlo: unless given, and the least
 _HALVING_SHARE, _BIAS_SHARE = 0.4, 0.12  # of the tolerance: error of the bias, and the bias
 _ATTEMPTS = 5
+_FEW_STEPS = 5e7  # of all paths together, faster than grids for two variables
 # tolerances from which Monte Carlo is faster than grids, as measured by benchmarks/requests.py
 _FASTER_SAMPLED = {1: math.inf, 2: math.inf, 3: 1e-2, 4: 3e-3}
 _TIMES = (10.0, 60.0, 110.0)  # between which Monte Carlo takes the slope, unless it changes
@@ -253,8 +255,9 @@ def variance(scene, times, tol=None, method=None, seed=0, threads=None):
         Requested absolute error of v(tau)/tau; unless given, 1e-9 for one state variable, 1e-5 for
         two and 1e-2 by Monte Carlo.
     method : {"deterministic", "monte_carlo"}, optional
-        ``"deterministic"``, for the state y with white noise, or two state variables and a finite
-        n, is taken there, unless a method is given, and ``"monte_carlo"`` elsewhere.
+        ``"deterministic"`` is for the state y with white noise, or two state variables and a
+        finite n. Unless a method is given, it is taken there, but for two variables where `tol` is
+        so loose that a few paths do; ``"monte_carlo"`` elsewhere.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 
@@ -277,38 +280,48 @@ def variance(scene, times, tol=None, method=None, seed=0, threads=None):
     times = np.atleast_1d(np.asarray(times, dtype=float))
     if not np.all(times >= 0):
         raise SceneError("the times of the variance must not be negative; remove those that are")
-    solve = _solver(scene)
-    if method is None:
-        method = "deterministic" if solve else "monte_carlo"
-    if method == "monte_carlo":
-        tol = _SAMPLED if tol is None else tol
-        (w, v), (w_error, v_error), bound = _sampled_moments(scene, times, tol, seed, threads)
-    elif method != "deterministic":
+    if method not in (None, "deterministic", "monte_carlo"):
         raise SceneError(
             f"v(tau) has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
         )
-    elif solve is None:
+    solve = _solver(scene)
+    if method == "deterministic" and solve is None:
         raise SceneError(
             f"v(tau) is solved for one or two state variables and, for two, a finite n, not for "
             f"({', '.join(scene.state)}) with {scene.noise.title} at n = {scene.n:g}; use "
             "method='monte_carlo', which takes every scene"
         )
-    else:
-        tol = _VARIANCE[len(scene.state)] if tol is None else tol
-        (w, v), (w_error, v_error) = solve(scene, times, tol)
-        bound = v_error
-    rate, rate_error = (part / np.where(times > 0, times, 1.0) for part in (v, bound))
+    if method is None and solve is transient.moments and tol is not None and _increase(times):
+        try:  # where a few paths do, they are faster than any grid
+            return _sampled_moments(scene, times, tol, seed, threads, _FEW_STEPS)
+        except ToleranceError:
+            pass
+    if method == "monte_carlo" or solve is None:
+        return _sampled_moments(scene, times, _SAMPLED if tol is None else tol, seed, threads)
+    tol = _VARIANCE[len(scene.state)] if tol is None else tol
+    (w, v), (w_error, v_error) = solve(scene, times, tol)
+    _require_accuracy(times, v, v_error, tol)
+    return _moments_of(times, w, w_error, v, v_error, "deterministic")
+
+
+def _increase(times):
+    return times[0] > 0 and np.all(np.diff(times) > 0)
+
+
+def _require_accuracy(times, v, error, tol):
+    rate, rate_error = (part / np.where(times > 0, times, 1.0) for part in (v, error))
     worst = int(np.argmax(rate_error))
     if not rate_error[worst] <= tol:
         raise ToleranceError(
             f"v(tau)/tau = {rate[worst]:.10g} at tau = {times[worst]:g} has an error of "
             f"{rate_error[worst]:.1e}, above tol = {tol:g}; loosen tol"
         )
+
+
+def _moments_of(times, w, w_error, v, v_error, method):
+    variables = {"w": w, "w_error": w_error, "v": v, "v_error": v_error}
     return xr.Dataset(
-        {
-            name: ("time", values)
-            for name, values in (("w", w), ("w_error", w_error), ("v", v), ("v_error", v_error))
-        },
+        {name: ("time", values) for name, values in variables.items()},
         coords={"time": times},
         attrs={"method": method},
     )
@@ -323,8 +336,8 @@ def _solver(scene):
     return None
 
 
-def _sampled_moments(scene, times, tol, seed, threads):
-    """Simulate w and v with their errors, and what bounds that of v; pilots choose the sizes."""
+def _sampled_moments(scene, times, tol, seed, threads, most=MOST_STEPS):
+    """Simulate w and v with at most so many steps; pilots choose the sizes."""
     require_increasing("times of the variance", times)
     require_positive("tol", tol)
     paths, step = PILOT_PATHS, min(coarse_step(scene), float(times[-1]) / 32)
@@ -356,13 +369,14 @@ def _sampled_moments(scene, times, tol, seed, threads):
             f"v(tau)/tau = {float(run['variance'][-1]) / times[-1]:.3g} at tau = {times[-1]:g} has "
             f"an error of {error:.1g}",
             tol,
+            most,
         )
     mean, uncertain = stationary_mean(scene, labelled(seed, "stationary"), threads)
     w = run["mean"].values - mean * times
     w_error = np.abs(run["mean_bias"]) + np.hypot(run["mean_error"], run["mean_bias_error"])
-    v_error = times * (bias + np.hypot(own, spread))
-    bound = times * (bias + SIGMAS * np.hypot(own, spread))
-    return (w, run["variance"].values), (w_error.values + uncertain * times, v_error), bound
+    v, v_error = run["variance"].values, times * (bias + np.hypot(own, spread))
+    _require_accuracy(times, v, times * (bias + SIGMAS * np.hypot(own, spread)), tol)
+    return _moments_of(times, w, w_error.values + uncertain * times, v, v_error, "monte_carlo")
 
 
 def _of_velocity(scene, times, tol):
