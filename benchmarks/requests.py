@@ -5,7 +5,7 @@ request with all its alternatives to results/requests.csv; arguments choose quan
 first words, and a number divides the counts.
 
 Times are seconds of one core (process time), caches of scenes emptied and kernels compiled
-before; those below 0.2 s are medians of three runs.
+before; those below a second are the less of two.
 """
 
 import csv
@@ -23,10 +23,11 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth import quadrature, refinement, spectral, spectral_gap, transient
+from nonsmooth import quadrature, refinement, spectral, transient
 from nonsmooth.crossing import first_passage_counts
 from nonsmooth.errors import NonsmoothError, ToleranceError
 from nonsmooth.growth import growth, integrals
+from nonsmooth.spectral_gap import _on as spectral_gap_on
 from nonsmooth.trajectories import SIGMAS, coarse_step, gram, moments
 
 SEED, OUTPUT = 1, Path("results/requests")
@@ -42,7 +43,7 @@ COLUMNS = [
     "seconds",
     "error/tol",
 ]
-SHORT, REPEATS = 0.2, 3  # seconds of runs that are repeated, and how often they are run
+SHORT, REPEATS = 1.0, 2  # seconds of runs that are repeated, and how often they are run
 OVERHEAD = 0.05  # seconds that are added to both times: less is nobody's wait
 LIMIT = 3.0
 LOOSER = (100.0, 30.0, 10.0, 3.0)  # times the tolerance: the cheaper resolutions
@@ -50,7 +51,7 @@ LOOSEST = 0.3
 STEPS = (1.0, 0.5, 0.25, 0.125)  # of plain Monte Carlo, times the coarse one
 GROWTH_TIMES = (10.0, 60.0, 110.0)
 SPREAD = {"gamma^2": 2.4, "variance": 2.0}  # variance of the estimates times paths, relative
-POTENTIALS = ("x**2/2", "{a}*x**2/2 + {b}*cos(2*x)", "{a}*x**4/4 + x**2/2")
+POTENTIALS = ("x**2/2", "x**2", "x**2/2 + 0.3*cos(2*x)", "x**4/4 + x**2/2")
 FINER = 10.0  # of references that are grids
 RESOLVED = 2.5  # of references that are sampled
 
@@ -67,6 +68,17 @@ class Request:
     def ask(self, tol=None, **options):
         """Ask the library; with another tolerance or method, if given."""
         return ASKED[self.quantity](self, tol or self.tol, **options)
+
+    @functools.cached_property
+    def reference(self):
+        """Look up what it is judged by, and the part of the tolerance to which that is known."""
+        return QUANTITIES[self.quantity].reference(self)
+
+    def afresh(self):
+        """Make the same request of a scene of its own, for which nothing has been prepared."""
+        other = replace(self, scene=replace(self.scene))
+        other.__dict__["reference"] = self.reference
+        return other
 
 
 @dataclass(frozen=True)
@@ -132,8 +144,7 @@ def random_scene(rng, finite=False, variables=(1, 2, 3, 4), odd=False):
         n = math.inf if rigid else log_uniform(rng, 1, 1000)
         U, g = "0", pick(rng, OBSERVABLES[model])
         if model != "friction":
-            a, b = rng.uniform(0.5, 2), rng.uniform(-0.3, 0.3)
-            U = pick(rng, POTENTIALS).format(a=round(a, 3), b=round(b, 3))
+            U = pick(rng, POTENTIALS)
         if rigid and g in ("contact_force", "plastic_strain_rate"):
             continue
         scene = ns.Scene(model, pick(rng, COLOURS[noise]), n, log_uniform(rng, 0.5, 2), U, g)
@@ -345,7 +356,7 @@ def plain_crossing(request):
     scene, tol = request.scene, request.tol
 
     def run(share):
-        W = reference_of(request)[0]
+        W = request.reference[0]
         paths = plain_paths(math.sqrt(np.max(W * (1 - W))), tol)
         step = coarse_step(scene) * share
         counts = first_passage_counts(scene, **request.given, step=step, paths=paths, seed=5)
@@ -403,22 +414,10 @@ def moments_on(request, grid):
 
 def gap_on(request, grid):
     """Compute the gap."""
-    return spectral_gap._on(request.scene, grid)[0]
+    return spectral_gap_on(request.scene, grid)[0]
 
 
 # References
-
-
-@functools.cache
-def known(index):
-    """Make the reference of a request, once."""
-    request = REQUESTS[index]
-    return QUANTITIES[request.quantity].reference(request)
-
-
-def reference_of(request):
-    """Look up the reference: values, and the part of the tolerance to which they are known."""
-    return known(REQUESTS.index(request))
 
 
 def more_resolved(request):
@@ -476,18 +475,13 @@ def true_density(request):
 def true_gap(request):
     """Resolve more."""
     if spectral.applies(request.scene):
-        return gap_on_degree(replace_scene(request), 28), 0.0
+        return gap_on_degree(request, 28), 0.0
     return more_resolved(request)
 
 
 def true_length(request):
     """Resolve more."""
     return request.ask(request.tol / 3)[0], 1 / 3
-
-
-def replace_scene(request):
-    """Make the same request of a scene of its own, with nothing cached."""
-    return replace(request, scene=replace(request.scene))
 
 
 def relative(request, values, reference):
@@ -575,7 +569,6 @@ QUANTITIES = {
         10, some_length, true_length, absolute, {"looser": looser()}, {}
     ),
 }
-REQUESTS = []
 
 
 # Measurement
@@ -610,7 +603,7 @@ def timed(run, most=math.inf):
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0)
         seconds.append(time.process_time() - began)
-    return float(np.median(seconds)), result
+    return min(seconds), result
 
 
 def warm(request):
@@ -631,13 +624,13 @@ def measure(request):
             return seconds, math.nan
         values = np.asarray(values)
         with np.errstate(all="ignore"):
-            error = quantity.distance(request, values, reference_of(request)[0]) / request.tol
+            error = quantity.distance(request, values, request.reference[0]) / request.tol
         return seconds, float(error)
 
     chosen = []
 
     def library():
-        values, method = replace_scene(request).ask()
+        values, method = request.afresh().ask()
         chosen[:] = [method]
         return values
 
@@ -645,7 +638,7 @@ def measure(request):
     rows = [("library", chosen[0] if chosen else "refused", seconds, error)]
     for kind in ("stated", "bare"):
         for name, family in getattr(quantity, kind).items():
-            for run in family(replace_scene(request)):
+            for run in family(request.afresh()):
                 took, off = judged(run, 1.2 * seconds + OVERHEAD)
                 rows.append((kind, name, took, off))
                 if off <= 1 or took > seconds:  # the rest are dearer
@@ -699,16 +692,18 @@ def main(arguments):
     warnings.simplefilter("ignore")
     divisor = int(next((a for a in arguments if a.isdigit()), 1))
     names = tuple(a for a in arguments if not a.isdigit())
-    for place, (name, quantity) in enumerate(QUANTITIES.items()):
-        for index in range(quantity.count // divisor):
-            if name.startswith(names or ""):
-                REQUESTS.append(quantity.draw(np.random.default_rng((SEED, place, index))))
+    requests = (
+        quantity.draw(np.random.default_rng((SEED, place, index)))
+        for place, (name, quantity) in enumerate(QUANTITIES.items())
+        for index in range(quantity.count // divisor)
+        if name.startswith(names or "")
+    )
     OUTPUT.mkdir(parents=True, exist_ok=True)
     found = []
     with (OUTPUT / f"{'_'.join(names) or 'all'}.csv").open("w", newline="") as file:
         lines = csv.writer(file)
         lines.writerow(COLUMNS)
-        for number, request in enumerate(REQUESTS):
+        for number, request in enumerate(requests):
             rows = measure(request)
             own = [number, request.quantity, len(request.scene.state), request.scene]
             own += [{k: v for k, v in request.given.items() if k != "points"}, f"{request.tol:.3g}"]
