@@ -20,6 +20,7 @@ from nonsmooth.streams import blocks, labelled
 from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
+    MOST_STEPS,
     PILOT_PATHS,
     SIGMAS,
     SPREAD_SHARE,
@@ -40,11 +41,13 @@ from nonsmooth.trajectories import (
 from nonsmooth.variance import limit_variance, stationary_mean
 
 _CONFIDENCE = 0.997  # of the pilot's limits of the probability
-# Seconds on one core, as measured: of a step of a path with all pilots, of a run, and of the
-# spectral method for each window of its contours, at tolerances that coarse levels meet or not
-_STEP, _RUN = 2e-9, 0.01
-_COARSE_BIAS = 0.01  # of the coarse step, in W
+# Seconds on one core, as measured: of a coarse step of a path, with all that comes on top, and of
+# the spectral method for each window of its contours, at tolerances that coarse levels meet or not
+_STEP = 4e-9
 _WINDOW, _LOOSE = {True: 0.4, False: 0.85}, 1e-4
+_SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
+_PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
+_LEAST = 0.03  # standard deviation of what no path of the pilot does
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -220,10 +223,9 @@ def crossing_probability(
     p : float
         Scale of the functional central limit theorem, > 0.
     method : {"monte_carlo", "spectral", "asymptotic", "corrected"}, optional
-        ``"spectral"`` is deterministic, for one state variable and white noise. Unless a method,
-        or a parameter that only one has, is given: there it or, where `tol` is so loose that it
-        should be faster, ``"monte_carlo"``, and if one cannot meet `tol`, the other; elsewhere
-        ``"monte_carlo"``.
+        ``"spectral"`` is deterministic, for one state variable and white noise. It is taken there,
+        unless a method or a parameter of another one is given, or `tol` is so loose that
+        ``"monte_carlo"`` should be faster; elsewhere ``"monte_carlo"``.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`; beyond the
         state y with white noise it needs odd g, order 1 and, with more than two variables,
@@ -273,17 +275,18 @@ def crossing_probability(
         require_positive("tol", tol)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: value for name, value in options.items() if value is not None}
-    failed = []
-    for name in _candidates(scene, horizons, p, given) if method is None else [method]:
+    attempts = _attempts(scene, horizons, p, given) if method is None else [(method, {})]
+    failed = {}
+    for name, limits in attempts:
         try:
             values, attributes = _by(name, given)(
-                scene, threshold, horizons, p, seed=seed, threads=threads, **given
+                scene, threshold, horizons, p, seed=seed, threads=threads, **given, **limits
             )
             break
         except ToleranceError as error:
-            failed.append(error)
-    else:
-        raise failed[0]
+            failed.setdefault(name == "monte_carlo", error)
+    else:  # what the solver has reached is the best there is
+        raise failed[min(failed)]
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
@@ -301,26 +304,39 @@ def _by(method, given):
     return METHODS[method]
 
 
-def _candidates(scene, horizons, p, given):
-    """Methods that know their error, the one expected to be the fastest first."""
+def _attempts(scene, horizons, p, given):
+    """Choose the methods to try in turn, each with its limits.
+
+    Monte Carlo, whose pilot tells how many paths are needed, comes first if it may turn out faster
+    than the solver, and is stopped if it does not; it comes last if it may do what the solver
+    could not.
+    """
     if "order" in given:
-        return ["corrected"]
-    if {"step", "paths", "precision"} & given.keys() or not spectral.applies(scene):
-        return ["monte_carlo"]
-    if "tol" not in given:
-        return ["spectral"]
-    seconds = {
-        name: expected(scene, horizons, p, given["tol"]) for name, expected in SECONDS.items()
+        return [("corrected", {})]
+    solvers = {
+        name: seconds(horizons, given.get("tol", 0.0))
+        for name, (applies, seconds) in SOLVERS.items()
+        if applies(scene) and not {"step", "paths", "precision"} & given.keys()
     }
-    return sorted(seconds, key=seconds.get)
+    if not solvers:
+        return [("monte_carlo", {})]
+    solver = min(solvers, key=solvers.get)
+    if "tol" not in given:
+        return [(solver, {})]
+    attempts = [(solver, {})]
+    if given["tol"] >= _SAMPLED:
+        attempts.append(("monte_carlo", {"most": _PATIENCE}))
+    most = solvers[solver] / _STEP
+    steps = p * horizons[-1] / coarse_step(scene)
+    if (
+        PILOT_PATHS * steps <= _PILOT_SHARE * most
+        and paths_for(_LEAST, given["tol"]) * steps <= most
+    ):
+        attempts.insert(0, ("monte_carlo", {"most": most}))
+    return attempts
 
 
-def _sampling_seconds(scene, horizons, p, tol):
-    steps = p * horizons[-1] / coarse_step(scene) * max(1.0, (_COARSE_BIAS / tol) ** (2 / 3))
-    return _RUN + _STEP * paths_for(0.5, tol) * steps
-
-
-def _spectral_seconds(scene, horizons, p, tol):
+def _spectral_seconds(horizons, tol):
     return _WINDOW[tol >= _LOOSE] * (1 + np.log(horizons[-1] / horizons[0]) / np.log(5))
 
 
@@ -335,11 +351,12 @@ def _monte_carlo(
     step=None,
     paths=None,
     precision="float32",
+    most=MOST_STEPS,
 ):
     """Count paths; the step and the number of paths follow from `tol` unless given."""
     problem = (scene, threshold, horizons, p)
     if step is None or paths is None:
-        step, paths = _planned(*problem, tol, step, paths, labelled(seed, "pilot"), threads)
+        step, paths = _planned(*problem, tol, step, paths, labelled(seed, "pilot"), threads, most)
     require_count("paths", paths)
     fewer = min(paths, max(PILOT_PATHS, paths // 8))
     require_positive("step", step)
@@ -356,7 +373,7 @@ def _monte_carlo(
     return values, {"step": step, "paths": paths}
 
 
-def _planned(scene, threshold, horizons, p, tol, step, paths, seed, threads):
+def _planned(scene, threshold, horizons, p, tol, step, paths, seed, threads, most):
     """Step and number of paths for a tolerance, unless given, from pilots with a coarse step."""
     times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
     longest = coarse_step(scene) if step is None else step
@@ -379,6 +396,7 @@ def _planned(scene, threshold, horizons, p, tol, step, paths, seed, threads):
             times[-1] / longest,
             f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}",
             tol,
+            most,
         )
     if step is None:
         if paths // 8 > count:
@@ -413,9 +431,9 @@ def _corrected(scene, threshold, horizons, p, seed, threads, order=1):
     return {"probability": value, "probability_error": error}, {}
 
 
-# Expected seconds of the methods that can promise `tol`, of (scene, horizons, p, tol), where the
-# state is y and the noise white: `crossing_probability` tries the fastest first.
-SECONDS = {"spectral": _spectral_seconds, "monte_carlo": _sampling_seconds}
+# The deterministic methods that can promise `tol`: where each applies, and the seconds it is
+# expected to take for (horizons, tol).
+SOLVERS = {"spectral": (spectral.applies, _spectral_seconds)}
 
 # Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
 # the other parameters of `crossing_probability` that it has; it returns the variables over the
