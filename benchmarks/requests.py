@@ -173,7 +173,7 @@ def some_variance(rng):
     size = gamma_scale(scene)
     tol = tolerance(rng, scene, ranges) * size
     if math.isinf(scene.n) and len(scene.state) == 2:
-        tol = max(tol, 1e-2 * size)
+        tol = max(tol, 3e-2 * size)
     return Request("variance", scene, tol, {"times": times})
 
 
