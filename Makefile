@@ -1,11 +1,11 @@
-# make paper · make test · make smoke · make lint · make benchmark · make peers · make diagrams ·
-# make lock · make clean
+# make paper · make test · make smoke · make lint · make benchmark · make requests · make peers ·
+# make diagrams · make lock · make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: env paper smoke test lint format benchmark peers diagrams lock clean
+.PHONY: env paper smoke test lint format benchmark requests peers diagrams lock clean
 
 paper: env
 	$(BIN)/snakemake --cores $(CORES)
@@ -30,6 +30,10 @@ format: env
 # PEERS: python of an environment made from benchmarks/peers.txt, to measure them too
 benchmark: env
 	$(BIN)/python -m benchmarks.speed $(PEERS)
+
+# what a tolerance costs, against the best choice in hindsight
+requests: env
+	$(BIN)/python -m benchmarks.requests
 
 # the peers' environment, which the work-precision diagrams then use
 peers:

@@ -295,7 +295,9 @@ class TestSpectral:
     @pytest.mark.parametrize(
         ("scene", "given", "method"),
         [
-            (FRICTION, {"tol": 1e-2}, "spectral"),
+            (FRICTION, {}, "spectral"),
+            (FRICTION, {"tol": 1e-5}, "spectral"),
+            (FRICTION, {"tol": 1e-2}, "monte_carlo"),  # 1 ms against a second
             (FRICTION, {"paths": 10}, "monte_carlo"),
             (FRICTION, {"order": 1}, "corrected"),
             (ns.Scene("friction", "langevin"), {"tol": 0.1}, "monte_carlo"),

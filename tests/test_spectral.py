@@ -118,5 +118,5 @@ def test_unreachable_tolerance_is_refused_with_the_best_value():
 
 def test_other_states_are_refused():
     """More than two variables have no solver, and the message says what to do."""
-    with pytest.raises(SceneError, match="use simulate"):
-        ns.variance(ns.Scene("obstacle", "langevin"), [1.0])
+    with pytest.raises(SceneError, match="method='monte_carlo'"):
+        ns.variance(ns.Scene("obstacle", "langevin"), [1.0], method="deterministic")

@@ -60,3 +60,32 @@ def test_mean_by_symmetry_quadrature_and_simulation():
             [1.0],
             method="asymptotic",
         )
+
+
+def test_the_method_follows_from_the_tolerance():
+    """Three variables are sampled to a tenth; what has no solver always is."""
+    scene = ns.Scene("obstacle", "langevin", potential="x**2/2", observable="x")
+    assert ns.asymptotic_variance(scene, 0.1).method == "Monte Carlo"
+    assert ns.asymptotic_variance(ns.Scene("friction"), 0.1).method == "closed form"
+    assert ns.variance(scene, [1.0], 0.05).attrs["method"] == "monte_carlo"
+    assert ns.variance(ns.Scene("friction"), [1.0], 0.05).attrs["method"] == "deterministic"
+
+
+def test_sampled_variance_meets_its_tolerance():
+    """Against the eigenfunctions, three standard errors and the bias; a false alarm in 100 runs."""
+    scene, times = ns.Scene("friction"), np.array([1.0, 10.0])
+    exact = ns.variance(scene, times)["v"]
+    found = ns.variance(scene, times, 3e-3, "monte_carlo")
+    assert np.all(np.abs(found["v"] - exact) <= 3e-3 * times)
+    assert np.all(found["v_error"] <= 3e-3 * times)
+    with pytest.raises(ToleranceError, match=r"v\(tau\)/tau = .* use tol >="):
+        ns.variance(scene, times, 1e-9, "monte_carlo")
+
+
+@pytest.mark.parametrize("n", [3.0, 300.0])
+@pytest.mark.parametrize("tol", [3e-2, 1e-3, 1e-5])
+def test_ladder_of_grids_is_honest(n, tol):
+    """Forcing balance of the elasto-plastic model: gamma^2[U' + C_b y] = 1."""
+    scene = ns.Scene("elasto_plastic", n=n, potential="x**4/4 + x**2/2", observable="x**3 + x + y")
+    found = ns.asymptotic_variance(scene, tol)
+    assert abs(found.value - 1) <= found.error <= tol * found.value

@@ -12,7 +12,7 @@ import xarray as xr
 from nonsmooth import schemes, spectral
 from nonsmooth.brownian import asymptotic_crossing
 from nonsmooth.corrected import corrected_crossing
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.first_passage import spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
@@ -20,20 +20,34 @@ from nonsmooth.streams import blocks, labelled
 from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
+    MOST_STEPS,
     PILOT_PATHS,
+    SIGMAS,
+    SPREAD_SHARE,
     coarse_step,
     coupled,
     parallel,
+    paths_for,
     refined_step,
     require_count,
     require_finite,
     require_increasing,
     require_positive,
+    require_possible,
     require_resolved,
     step_bias,
     variance_of_fine,
 )
 from nonsmooth.variance import limit_variance, stationary_mean
+
+_CONFIDENCE = 0.997  # of the pilot's limits of the probability
+# Seconds on one core, as measured: of a coarse step of a path, with all that comes on top, and of
+# the spectral method for each window of its contours, at tolerances that coarse levels meet or not
+_STEP = 4e-9
+_WINDOW, _LOOSE = {True: 0.4, False: 0.85}, 1e-4
+_SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
+_PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
+_LEAST = 0.03  # standard deviation of what no path of the pilot does
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -209,17 +223,18 @@ def crossing_probability(
     p : float
         Scale of the functional central limit theorem, > 0.
     method : {"monte_carlo", "spectral", "asymptotic", "corrected"}, optional
-        ``"spectral"`` is deterministic, for one state variable and white noise: it is taken there
-        unless a parameter of another method is given, and ``"monte_carlo"`` elsewhere.
+        ``"spectral"`` is deterministic, for one state variable and white noise. It is taken there,
+        unless a method or a parameter of another one is given, or `tol` is so loose that
+        ``"monte_carlo"`` should be faster; elsewhere ``"monte_carlo"``.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p, p^(-3/2) or p^(-2), see `corrected`; beyond
         the state y with white noise it needs odd g, order 1 and, with more than two variables,
         constants that are sampled.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
-        given, on the number of paths (two standard errors are at most `tol`) and on the time
-        step (its bias is half). ``"spectral"``: 1e-7 unless given. ``"corrected"``: any error
-        is returned unless it is given. ``"asymptotic"`` has none.
+        given, on the number of paths (three standard errors are at most three quarters of `tol`)
+        and on the time step (its bias is a quarter). ``"spectral"``: 1e-7 unless given.
+        ``"corrected"``: any error is returned unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -260,28 +275,69 @@ def crossing_probability(
         require_positive("tol", tol)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: value for name, value in options.items() if value is not None}
-    if method is None:
-        method = _chosen(scene, given)
+    attempts = _attempts(scene, horizons, p, given) if method is None else [(method, {})]
+    failed = {}
+    for name, limits in attempts:
+        try:
+            values, attributes = _by(name, given)(
+                scene, threshold, horizons, p, seed=seed, threads=threads, **given, **limits
+            )
+            break
+        except ToleranceError as error:
+            failed.setdefault(name == "monte_carlo", error)
+    else:  # what the solver has reached is the best there is
+        raise failed[min(failed)]
+    return xr.Dataset(
+        {name: ("horizon", value) for name, value in values.items()},
+        coords={"horizon": horizons},
+        attrs={"method": name} | attributes,
+    )
+
+
+def _by(method, given):
+    """Look up a method, which has to have the parameters that are given."""
     if method not in METHODS:
         raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
     for name in given:
         if name not in inspect.signature(METHODS[method]).parameters:
             raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
-    values, attributes = METHODS[method](
-        scene, threshold, horizons, p, seed=seed, threads=threads, **given
-    )
-    return xr.Dataset(
-        {name: ("horizon", value) for name, value in values.items()},
-        coords={"horizon": horizons},
-        attrs={"method": method} | attributes,
-    )
+    return METHODS[method]
 
 
-def _chosen(scene, given):
+def _attempts(scene, horizons, p, given):
+    """Choose the methods to try in turn, each with its limits.
+
+    Monte Carlo, whose pilot tells how many paths are needed, comes first if it may turn out faster
+    than the solver, and is stopped if it does not; it comes last if it may do what the solver
+    could not.
+    """
     if "order" in given:
-        return "corrected"
-    sampled = {"step", "paths", "precision"} & given.keys()
-    return "spectral" if spectral.applies(scene) and not sampled else "monte_carlo"
+        return [("corrected", {})]
+    solvers = {
+        name: seconds(horizons, given.get("tol", 0.0))
+        for name, (applies, seconds) in SOLVERS.items()
+        if applies(scene) and not {"step", "paths", "precision"} & given.keys()
+    }
+    if not solvers:
+        return [("monte_carlo", {})]
+    solver = min(solvers, key=solvers.get)
+    if "tol" not in given:
+        return [(solver, {})]
+    attempts = [(solver, {})]
+    if given["tol"] >= _SAMPLED:
+        attempts.append(("monte_carlo", {"most": _PATIENCE}))
+    most = solvers[solver] / _STEP
+    steps = p * horizons[-1] / coarse_step(scene)
+    if (
+        PILOT_PATHS * steps <= _PILOT_SHARE * most
+        and paths_for(_LEAST, given["tol"]) * steps <= most
+    ):
+        attempts.insert(0, ("monte_carlo", {"most": most}))
+    return attempts
+
+
+def _spectral_seconds(horizons, tol):
+    return _WINDOW[tol >= _LOOSE] * (1 + np.log(horizons[-1] / horizons[0]) / np.log(5))
 
 
 def _monte_carlo(
@@ -295,17 +351,14 @@ def _monte_carlo(
     step=None,
     paths=None,
     precision="float32",
+    most=MOST_STEPS,
 ):
     """Count paths; the step and the number of paths follow from `tol` unless given."""
-    paths = int(np.ceil(1 / tol**2)) if paths is None else paths
+    problem = (scene, threshold, horizons, p)
+    if step is None or paths is None:
+        step, paths = _planned(*problem, tol, step, paths, labelled(seed, "pilot"), threads, most)
     require_count("paths", paths)
     fewer = min(paths, max(PILOT_PATHS, paths // 8))
-    problem = (scene, threshold, horizons, p)
-    if step is None:
-        step = coarse_step(scene)
-        bias, error = first_passage_bias(*problem, step, fewer, labelled(seed, "pilot"), threads)
-        worst = np.max(np.abs(bias) + error)
-        step = refined_step(step, worst, tol / 2, schemes.scheme(scene).weak_order(scene))
     require_positive("step", step)
     crossed = first_passage_counts(
         *problem, step, paths, seed, threads=threads, precision=precision
@@ -318,6 +371,41 @@ def _monte_carlo(
     require_resolved(step, variance_of_fine(change)[-1], bias[-1], error[-1])
     values["step_bias"], values["step_bias_error"] = _bias_of_counts(scene, times, passage)
     return values, {"step": step, "paths": paths}
+
+
+def _planned(scene, threshold, horizons, p, tol, step, paths, seed, threads, most):
+    """Step and number of paths for a tolerance, unless given, from pilots with a coarse step."""
+    times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
+    longest = coarse_step(scene) if step is None else step
+    require_positive("step", longest)
+
+    def pilot(paths):
+        return coupled(scene, times, longest, paths, seed, threads, levels)[1]
+
+    count = min(PILOT_PATHS, paths_for(0.5, tol) if paths is None else paths)
+    require_count("paths", count)
+    passage = pilot(count)
+    if paths is None:
+        crossed = np.sum(passage[0][:, None] <= times, axis=0)
+        # the probability nearest to 1/2 that the pilot does not exclude
+        _, low, high = proportion(crossed, count, _CONFIDENCE)
+        worst = np.clip(0.5, low, high)
+        paths = max(count, paths_for(np.sqrt(np.max(worst * (1 - worst))), tol))
+        require_possible(
+            paths,
+            times[-1] / longest,
+            f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}",
+            tol,
+            most,
+        )
+    if step is None:
+        if paths // 8 > count:
+            passage = pilot(paths // 8)
+        bias, error = _bias_of_counts(scene, times, passage)
+        worst = np.max(np.abs(bias) + error)
+        order = schemes.scheme(scene).weak_order(scene)
+        step = refined_step(longest, worst, (1 - SPREAD_SHARE) * tol, order)
+    return step, paths
 
 
 def _asymptotic(scene, threshold, horizons, p, seed, threads):
@@ -342,6 +430,10 @@ def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
     value, error = corrected_crossing(scene, *threshold, horizons, p, order, tol, seed, threads)
     return {"probability": value, "probability_error": error}, {}
 
+
+# The deterministic methods that can promise `tol`: where each applies, and the seconds it is
+# expected to take for (horizons, tol).
+SOLVERS = {"spectral": (spectral.applies, _spectral_seconds)}
 
 # Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
 # the other parameters of `crossing_probability` that it has; it returns the variables over the

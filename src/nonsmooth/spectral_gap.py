@@ -13,7 +13,7 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.poisson import EVEN, ODD
 
 _WANTED = 6  # eigenvalues computed; the slowest pair may be complex
-_COARSE, _FINEST = 2, 8  # levels
+_FIT, _COARSE, _FINEST = 1, 0, 8  # levels: where the box is fitted, first and last
 _MARGIN = 0.15  # of the box, to see whether it matters
 # relative; against linear scenes it comes to 2e-12, and what moves eigenvalues that coincide apart
 # to 2e-13
@@ -46,7 +46,7 @@ def spectral_gap(scene, tol=1e-6):
     if spectral.applies(scene):
         solve, levels = _of_polynomials, (8, 12, 16, 20, 24)
     elif len(scene.state) == 2 and not math.isinf(scene.n):
-        grid = refinement.fitted(scene, math.log(1 / tol) + refinement.SPARE, _COARSE)
+        grid = refinement.fitted(scene, math.log(1 / tol) + refinement.SPARE, _FIT)
 
         def solve(scene, level, margin=0.0):
             levels = dict.fromkeys(grid.levels, level)

@@ -1,5 +1,6 @@
 """Paths and the moments of their integrals: `simulate`."""
 
+import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from numbers import Integral
@@ -16,6 +17,7 @@ from nonsmooth.panel import STATE, TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
 from nonsmooth.times import equal_steps
 
+MOST_STEPS = 1e13  # of all paths together: hours
 _EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
 
 
@@ -379,12 +381,37 @@ def simulate(
 
 _LONGEST_STEP = 0.1  # times the smaller of 1 and 1/C_b
 PILOT_PATHS = 4096
+# A tolerance is met if these many standard errors and the bias of the step are within it: one
+# result in 400 misses it.
+SIGMAS = 3.0
+SPREAD_SHARE = 0.75  # of the tolerance, for the standard errors; least work at the weak order 3/2
 
 
 def coarse_step(scene, scheme="strang"):
     """Step from which the search for one with a given bias starts."""
     longest = schemes.scheme(scene, scheme).longest_step(scene)
     return min(_LONGEST_STEP * min(1.0, 1 / scene.damping), longest / 4)
+
+
+def paths_for(deviation, tol):
+    """Count the paths on whose average, of a given standard deviation, `tol` can be promised."""
+    return math.ceil((SIGMAS * deviation / (SPREAD_SHARE * tol)) ** 2)
+
+
+def require_possible(paths, steps, what, tol, most=MOST_STEPS):
+    """Refuse a tolerance that would take more steps of all paths together than can be waited for.
+
+    Raises
+    ------
+    ToleranceError
+        The message begins with `what`, the best value and its error.
+    """
+    if paths * steps > most:
+        reachable = tol * math.sqrt(paths * steps / most)
+        raise ToleranceError(
+            f"{what}; tol = {tol:g} would take Monte Carlo {paths:.1e} paths of {steps:.1e} steps; "
+            f"use tol >= {reachable:.1g}"
+        )
 
 
 def refined_step(step, bias, allowed, order):

@@ -25,7 +25,7 @@ from nonsmooth.poisson import EVEN, ODD
 _POLES = (0.0, 10.0)  # larger ones resolve earlier times, and what the grid does not
 _STEPS = range(12, 85, 6)  # dimensions of the Krylov space that are compared
 _SHARE = 0.05  # of the tolerance, for the projection
-_COARSE, _FINEST = 2, 9  # levels
+_COARSE, _FINEST = 1, 9  # levels
 _LARGEST = 45_000  # grid points; each pole keeps its factors in memory
 _MARGIN = 0.15  # of the box, to see whether it matters
 _DEPENDENT = 1e-10  # a function this much smaller without what it shares with others

@@ -139,7 +139,7 @@ def _inverted(scene, p):
 
 
 def _rate(scene, tolerance):
-    return asymptotic_variance(scene, tolerance).value
+    return asymptotic_variance(scene, tolerance, "deterministic").value
 
 
 if __name__ == "__main__":

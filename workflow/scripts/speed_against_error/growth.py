@@ -67,7 +67,7 @@ def _expanded(scene, degree, unit):
 
 
 def _solved(scene, tol, unit):
-    return asymptotic_variance(scene, tol).value / unit
+    return asymptotic_variance(scene, tol, "deterministic").value / unit
 
 
 def _sampled(scene, times, step, paths, unit, seed):
