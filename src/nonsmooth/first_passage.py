@@ -19,22 +19,24 @@ from nonsmooth.transport import first_passage
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
 # rises; more nodes, of larger real part, would only make the rounding errors grow
-_LEVELS = ((4, 6, 1.2), (7, 9, 0.85), (9, 11, 0.75), (11, 12, 0.7), (14, 13, 0.65))
+_LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.65))
 _LOOSE = 1e-4  # tolerance that the first levels may meet
-_PER_DECADE = 10  # nodes more for each decade of times
-_SECTOR = 0.3  # half angle about the negative axis, of the poles
+_PER_DECADE = 12  # nodes more for each decade of times
+_SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
 # last time over first time, of a contour; while the probability rises, and the rise then
-_WINDOW, _NARROW, _GROWTH = 5.0, 2.5, 300.0
-_NEGLIGIBLE, _RISEN = 1e-14, 0.95  # bounds of the probability; below the first, it is taken as 0
-_LATER = 2.0  # the end of the rise, relative to the last time whose bound is below _RISEN
-_FINELY = 0.7  # grading of the elements while the probability rises
-_LAST = 1e-15  # terms of a contour through a saddle, relative to the first
+_WINDOW, _NARROW, _GROWTH = 20.0, 2.5, 1e4
+_NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
+# after the rise the transform grows at most by exp(_TAME |z| t) where |z| t > _FAR, on the
+# asymptotes of the contours
+_TAME, _FAR, _ASYMPTOTE = 0.06, 6.0, np.pi - 0.9
+_LAST = 1e-12  # terms of a contour through a saddle, relative to the first
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
 _ROUNDING = 1e-13
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _UNDERFLOW, _ROUNDED = 1e-300, 1e-70
 _AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
+_DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
 _LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z in the search for saddles
 
 
@@ -127,11 +129,19 @@ class _Saddles:
         z, and the standard deviation along a contour through it, for each time.
     bound : numpy.ndarray, shape (k,)
         Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
+    growth : numpy.ndarray, shape (k,)
+        Largest log |F(z)| / |z| t far out on the asymptotes of a hyperbola.
     """
 
     place: np.ndarray
     width: np.ndarray
     bound: np.ndarray
+    growth: np.ndarray
+
+    @property
+    def rising(self):
+        """Whether the probability is small or the transform grows too fast for a hyperbola."""
+        return (self.bound < np.log(_RISEN)) | (self.growth > _TAME)
 
 
 def _saddles(scene, lower, upper, times):
@@ -142,7 +152,7 @@ def _saddles(scene, lower, upper, times):
         # the saddle of the time t is where z t = d log F / d log z, which is less than log F
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
         grid = ordinates(
-            scene, _LEVELS[1][0], depth / z, _FINELY, _reach(scene, depth / z, depth / 2)
+            scene, _LEVELS[1][0], depth / z, _reach(scene, depth / z, depth / 2), _DEPTH + depth
         )
         value = first_passage(grid, z, lower, upper).real
         if value < _ROUNDED:
@@ -150,19 +160,25 @@ def _saddles(scene, lower, upper, times):
         log_F.append(np.log(value))
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED))
+        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
     z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
-    bound, place, width = [], [], []
+    # as if -log F were a power of z about each z
+    power = np.divide(slope, cumulant, out=np.ones_like(slope), where=cumulant < 0)
+    growth = cumulant / z * np.cos(power * _ASYMPTOTE)
+    bound, place, width, grows = [], [], [], []
     for t in times:
         bound.append(np.min(z * t + cumulant))
+        grows.append(np.max(growth[z * t > _FAR], initial=0.0) / t)
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
         # second derivative in z of the exponent, log z among it
         width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
-    return _Saddles(np.array(place), np.array(width), np.maximum.accumulate(bound))
+    return _Saddles(
+        np.array(place), np.array(width), np.maximum.accumulate(bound), np.array(grows)
+    )
 
 
 def _reach(scene, time, depth):
@@ -183,14 +199,14 @@ def _windows(first, end, *growing):
 
 def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     """Probability and survival probability, shape (2, k)."""
-    begins, rises = np.searchsorted(saddles.bound, np.log([_NEGLIGIBLE, _RISEN]))
-    if rises > begins:  # contours around the poles need some time more
-        rises = max(rises, np.searchsorted(times, _LATER * times[rises - 1]))
+    begins = np.searchsorted(saddles.bound, np.log(_NEGLIGIBLE))
+    rises = max(begins, np.max(np.flatnonzero(saddles.rising) + 1, initial=0))
     found = np.zeros((2, len(times)))
 
-    def transform(where, **graded):
-        reach = _reach(scene, times[where][-1], -saddles.bound[where][0])
-        grid = ordinates(scene, degree, times[where][0], reach=reach, **graded)
+    def transform(where):
+        rarity = -saddles.bound[where][0]
+        reach = _reach(scene, times[where][-1], rarity)
+        grid = ordinates(scene, degree, times[where][0], reach, _DEPTH + rarity)
         return lambda z: first_passage(grid, z, lower, upper)
 
     def around_poles(where, first=0.0):
@@ -202,7 +218,7 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     for here in _windows(begins, rises, (times, _NARROW), (np.exp(saddles.bound), _GROWTH)):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
         contour = through_saddle(saddles.place[last], saddles.width[last], spacing)
-        found[0, here] = _probability(transform(here, grading=_FINELY), contour, times[here])
+        found[0, here] = _probability(transform(here), contour, times[here])
     for here in _windows(rises, len(times), (times, _WINDOW)):
         found[0, here] = _probability(transform(here), around_poles(here), times[here])
     found[1] = 1 - found[0]

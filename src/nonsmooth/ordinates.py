@@ -94,7 +94,7 @@ def _solve_scaled(matrix, right):
     return scale[:, None] * np.linalg.solve(matrix * np.outer(scale, scale), scale[:, None] * right)
 
 
-def ordinates(scene, degree, time, grading=_GRADING, reach=np.inf):
+def ordinates(scene, degree, time, reach=np.inf, deepest=_DEEPEST, grading=_GRADING):
     """Discretise a scene with the state y.
 
     Parameters
@@ -104,10 +104,12 @@ def ordinates(scene, degree, time, grading=_GRADING, reach=np.inf):
         Polynomial degree of the elements.
     time : float
         Shortest time of interest, "1".
-    grading : float
-        Greatest width of an element over its distance to a zero of g and to the start.
     reach : float
         Largest change of velocity that matters.
+    deepest : float
+        The grid ends where the density has fallen by exp(-deepest), "1".
+    grading : float
+        Greatest width of an element over its distance to a zero of g and to the start.
 
     Returns
     -------
@@ -123,8 +125,9 @@ def ordinates(scene, degree, time, grading=_GRADING, reach=np.inf):
         [knot, -knot],
         [expression, *quadrature.switches(expression)],
         time,
-        grading,
         reach,
+        deepest,
+        grading,
     )
     axis = continuous(edges, degree)
     y = axis.nodes
@@ -162,11 +165,11 @@ def _stiffness(axis, degree, density):
     return matrix
 
 
-def _edges(scene, depth, kinks, switches, time, grading, reach):
+def _edges(scene, depth, kinks, switches, time, reach, deepest, grading):
     """Edges on kinks and on zeros of g, graded towards these and towards the start."""
     start = scene.start.get("y", 0.0)
-    end = scene.noise.sigma * np.sqrt(_DEEPEST / scene.damping)
-    while depth(0.98 * end) > _DEEPEST:
+    end = scene.noise.sigma * np.sqrt(deepest / scene.damping)
+    while depth(0.98 * end) > deepest:
         end *= 0.98
     inside = np.linspace(-end, end, 4001)
     weight = np.exp(-depth(inside))

@@ -221,6 +221,10 @@ class Scene:
 
     def is_odd(self):
         """Whether g and the drift change sign with the state, so that E g = 0 by symmetry."""
+        return self._odd
+
+    @cached_property
+    def _odd(self):
         mirrored = {s: -s for s in self.variables}
         odd = [self.observable_expression]
         odd += [self.drift[s] for s in self.variables if s.name in self.state]

@@ -13,7 +13,7 @@ import numpy as np
 from nonsmooth.poisson import EVEN, ODD
 
 _ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
-_INSTANT = 1e-3  # lengths over which a mode decays at once, relative to the longest
+_DIRECTED = 0.1  # flux of a wave that only one wall sends, relative to the largest possible
 
 
 @dataclass(frozen=True)
@@ -82,21 +82,16 @@ def _eigen(matrix, balance):
 def _of_all(grid, resolvent, balance):
     moving = grid.moving
     inverses, vectors = _eigen(resolvent[moving], balance)
-    up = grid.g[moving] > 0
-    order = np.argsort(-inverses.real)
-    upper, lower = np.split(order, [np.count_nonzero(up)])
-    # as many modes decay from each wall as nodes leave there, as long as Re z > 0; beyond, the slow
-    # pair waves, and on a grid a few that decay at once may stray to the other side
     rates = 1 / inverses
     start = grid.start[EVEN] @ (rates * (resolvent @ vectors))
     vectors = np.sqrt(grid.masses[moving])[:, None] * vectors
-    instant = np.abs(inverses) < _INSTANT * np.max(np.abs(inverses))
+    up = grid.g[moving] > 0
+    decay = rates.real > 0
 
     def decaying(chosen, rates, leaves):
-        away = np.where(instant & (rates.real < 0), np.abs(rates), rates)[chosen]
-        return Modes(away, vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen])
+        return Modes(rates[chosen], vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen])
 
-    return decaying(upper, rates, up), decaying(lower, -rates, ~up)
+    return decaying(decay, rates, up), decaying(~decay, -rates, ~up)
 
 
 def first_passage(grid, z, lower, upper):
@@ -114,28 +109,44 @@ def first_passage(grid, z, lower, upper):
     complex
     """
     above, below = modes(grid, z)
-    weights = np.sqrt(grid.masses[grid.moving])
+    g, weights = grid.g[grid.moving], np.sqrt(grid.masses[grid.moving])
+    up, down = (slice(None),) * 2 if grid.mirrored else (g > 0, g < 0)
     if np.isinf(lower):
-        right = weights if grid.mirrored else weights[grid.g[grid.moving] > 0]
-        return (above.start * np.exp(-above.rates * upper)) @ np.linalg.solve(above.own, right)
+        return _of_one_wall(above, below, upper, np.abs(g[up]), np.abs(g[down]), weights[up])
     if np.isinf(upper):
-        right = weights if grid.mirrored else weights[grid.g[grid.moving] < 0]
-        return (below.start * np.exp(below.rates * lower)) @ np.linalg.solve(below.own, right)
+        return _of_one_wall(below, above, -lower, np.abs(g[down]), np.abs(g[up]), weights[down])
     far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
     if grid.mirrored:  # both walls see the same
         strength = np.linalg.solve(above.own + above.other * far_above, weights)
         strengths = strength, strength
     else:
-        up = grid.g[grid.moving] > 0
         strengths = np.split(
             np.linalg.solve(
                 np.block(
                     [[above.own, below.other * far_below], [above.other * far_above, below.own]]
                 ),
-                np.concatenate([weights[up], weights[~up]]),
+                np.concatenate([weights[up], weights[down]]),
             ),
-            [np.count_nonzero(up)],
+            [len(above.rates)],
         )
     return (above.start * np.exp(-above.rates * upper)) @ strengths[0] + (
         below.start * np.exp(below.rates * lower)
     ) @ strengths[1]
+
+
+def _of_one_wall(wall, opposite, distance, leaving, entering, right):
+    """The same where the other wall is infinitely far.
+
+    The solution is continued from Re z > 0, where modes decay as they leave. Beyond, those that the
+    end of the grid reflects may grow: they belong to a wall by the sign of their flux <phi, g phi>,
+    and what they carry is left out like all that is beyond the grid.
+    """
+    own = np.hstack([wall.own, opposite.other])
+    other = np.hstack([wall.other, opposite.own])
+    out, back = leaving @ np.abs(own) ** 2, entering @ np.abs(other) ** 2
+    flux = (out - back) / (out + back)
+    decays = np.repeat([1.0, -1.0], [len(wall.rates), len(opposite.rates)])
+    order = np.argsort(-np.where(np.abs(flux) > _DIRECTED, flux, _DIRECTED * decays), stable=True)
+    chosen = order[: len(right)]
+    carried = np.append(wall.start * np.exp(-wall.rates * distance), np.zeros(len(opposite.rates)))
+    return carried[chosen] @ np.linalg.solve(own[:, chosen], right)
