@@ -332,7 +332,7 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
     return {"probability": value, "probability_error": error}, {}
 
 
-def _spectral(scene, threshold, horizons, p, seed, threads, tol=1e-7):
+def _spectral(scene, threshold, horizons, p, seed, threads, tol=None):
     lower, upper = np.sqrt(p) * np.array(threshold)
     return spectral_crossing(scene, lower, upper, p * horizons, tol), {}
 

@@ -1,6 +1,7 @@
-"""Distribution of the first time at which int_0^t g leaves an interval, for one-dimensional scenes.
+"""Distribution of the first time at which int_0^t g leaves an interval.
 
-The Laplace transform of `transport`, inverted on hyperbolic contours. A contour serves times of one
+Its Laplace transform, of `transport` for one state variable and of `first_passage_plane` for two,
+inverted on hyperbolic contours. A contour serves times of one
 window. Where the probability, or the survival probability, is small, its contour starts at the
 saddle point or at the leading pole instead of 0: the error is then relative.
 """
@@ -11,9 +12,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
+from nonsmooth import first_passage_plane
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
+from nonsmooth.scene import Scene
 from nonsmooth.spectral import applies
 from nonsmooth.transport import first_passage
 
@@ -25,7 +28,7 @@ _PER_DECADE = 12  # nodes more for each decade of times
 _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
 # last time over first time, of a contour; while the probability rises, and the rise then
 _WINDOW, _NARROW, _GROWTH = 20.0, 2.5, 1e4
-_NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
+_RISEN = 0.05  # bound of the probability at the end of the rise
 # after the rise the transform grows at most by exp(_TAME |z| t) where |z| t > _FAR, on the
 # asymptotes of the contours
 _TAME, _FAR, _ASYMPTOTE = 0.06, 6.0, np.pi - 0.9
@@ -33,7 +36,7 @@ _LAST = 1e-12  # terms of a contour through a saddle, relative to the first
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
 _ROUNDING = 1e-13
 _SMALL = 1e-3  # survival probabilities below get contours of their own
-_UNDERFLOW, _ROUNDED = 1e-300, 1e-70
+_UNDERFLOW = 1e-300
 _AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
 _DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
@@ -46,13 +49,13 @@ def spectral_crossing(scene, lower, upper, times, tol):
     Parameters
     ----------
     scene : Scene
-        With the state y and white noise.
+        With the state y and white noise, or one to which `first_passage_plane` applies.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite.
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
-    tol : float
-        Absolute error wanted.
+    tol : float or None
+        Absolute error wanted; 1e-7, or 1e-4 for two variables, unless given.
 
     Returns
     -------
@@ -62,17 +65,22 @@ def spectral_crossing(scene, lower, upper, times, tol):
     Raises
     ------
     SceneError
-        If the scene has more state variables, or other noise.
+        If the scene is of another kind.
     ToleranceError
         If `tol` is not met; the message has the error.
     """
-    if not applies(scene):
+    if applies(scene):
+        problem = _Line(scene, lower, upper)
+    elif first_passage_plane.applies(scene):
+        problem = first_passage_plane.Plane(scene, lower, upper)
+    else:
         raise SceneError(
-            f"the spectral method needs the state (y) and white noise, not "
-            f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
+            "the spectral method needs the state (y) and white noise, or two state variables with "
+            f"finite n, odd g and drift, not ({', '.join(scene.state)}) with "
+            f"{scene.noise.title}; use method='monte_carlo'"
         )
     try:
-        return _refined(scene, lower, upper, times, tol)
+        return _refined(problem, times, problem.tol if tol is None else tol)
     except np.linalg.LinAlgError as error:
         raise ToleranceError(
             "the modes of the transport equation are not finite, as where g has a pole or the "
@@ -80,16 +88,63 @@ def spectral_crossing(scene, lower, upper, times, tol):
         ) from None
 
 
-def _refined(scene, lower, upper, times, tol):
-    saddles = _saddles(scene, lower, upper, times)
-    first = 0 if tol >= _LOOSE else 1
-    solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[first])
-    for level in _LEVELS[first + 1 :]:
-        coarse, solution = solution, _solve(scene, lower, upper, times, saddles, *level)
-        error = _largest_nearby(np.abs(solution - coarse), solution, times)
+@dataclass(frozen=True)
+class _Line:
+    """A scene with the state y and white noise, and an interval.
+
+    Attributes
+    ----------
+    relative : bool
+        Whether small probabilities are wanted to relative accuracy.
+    """
+
+    scene: Scene
+    lower: float
+    upper: float
+    tol = 1e-7
+    relative = True
+    levels, loose = _LEVELS, _LOOSE
+    # what is taken as 0: probabilities, and values of the transform
+    negligible, rounded = 1e-14, 1e-70
+
+    @property
+    def two_sided(self):
+        """Whether both levels are finite."""
+        return np.isfinite(self.lower) and np.isfinite(self.upper)
+
+    def on_axis(self, z, depth):
+        """E exp(-z tau) for z > 0, of the order exp(-depth)."""
+        reach = self._reach(depth / z, depth / 2)
+        return self._on(_LEVELS[1][0], depth / z, reach, _DEPTH + depth)(z).real
+
+    def transform(self, degree, times, rarity):
+        """Return z -> E exp(-z tau) for probabilities from exp(-rarity) on, at given times."""
+        reach = self._reach(times[-1], rarity)
+        return self._on(degree, times[0], reach, _DEPTH + rarity)
+
+    def _on(self, degree, time, reach, depth):
+        grid = ordinates(self.scene, degree, time, reach, depth)
+        return lambda z: first_passage(grid, z, self.lower, self.upper)
+
+    def _reach(self, time, depth):
+        """Change of velocity that is exceeded by `time` with at most 4 exp(-depth - _SPARE).
+
+        That of Brownian motion without drift, which points to the origin.
+        """
+        return self.scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
+
+
+def _refined(problem, times, tol):
+    saddles = _saddles(problem, times)
+    first = 0 if tol >= problem.loose else 1
+    solution = _solve(problem, times, saddles, *problem.levels[first])
+    for level in problem.levels[first + 1 :]:
+        coarse, solution = solution, _solve(problem, times, saddles, *level)
+        error = np.abs(solution - coarse)
+        error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
         error += 1e-13 * solution + _UNDERFLOW
-        error += _ROUNDING * scene.damping * times * solution[0] * solution[1]
-        error[0] = np.where(solution[0] == 0, np.maximum(_NEGLIGIBLE, error[0]), error[0])
+        error += _ROUNDING * problem.scene.damping * times * solution[0] * solution[1]
+        error[0] = np.where(solution[0] == 0, np.maximum(problem.negligible, error[0]), error[0])
         # the same event: what is known of the rarer of the two is known of both
         least = error.min(axis=0)
         error = np.where(error > 1e-12, least + 1e-15, error)
@@ -144,23 +199,20 @@ class _Saddles:
         return (self.bound < np.log(_RISEN)) | (self.growth > _TAME)
 
 
-def _saddles(scene, lower, upper, times):
+def _saddles(problem, times):
     """Find them by a spline of the transform on the axis."""
     first, last = np.log([0.1 / times[-1], _LARGEST / times[0]])
     log_z, log_F = np.arange(first, last + _AXIS, _AXIS), []
     for z in np.exp(log_z):
         # the saddle of the time t is where z t = d log F / d log z, which is less than log F
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
-        grid = ordinates(
-            scene, _LEVELS[1][0], depth / z, _reach(scene, depth / z, depth / 2), _DEPTH + depth
-        )
-        value = first_passage(grid, z, lower, upper).real
-        if value < _ROUNDED:
+        value = problem.on_axis(z, depth)
+        if value < problem.rounded:
             break
         log_F.append(np.log(value))
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing)
+        return _Saddles(nothing, nothing, nothing + np.log(problem.rounded), nothing)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
@@ -181,14 +233,6 @@ def _saddles(scene, lower, upper, times):
     )
 
 
-def _reach(scene, time, depth):
-    """Change of velocity that is exceeded by `time` with at most 4 exp(-depth - _SPARE).
-
-    That of Brownian motion without drift, which points to the origin.
-    """
-    return scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
-
-
 def _windows(first, end, *growing):
     """Slices of indices over which increasing values grow at most by the factor beside them."""
     while first < end:
@@ -197,17 +241,14 @@ def _windows(first, end, *growing):
         first = int(last)
 
 
-def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
+def _solve(problem, times, saddles, resolution, count, spacing):
     """Probability and survival probability, shape (2, k)."""
-    begins = np.searchsorted(saddles.bound, np.log(_NEGLIGIBLE))
+    begins = np.searchsorted(saddles.bound, np.log(problem.negligible))
     rises = max(begins, np.max(np.flatnonzero(saddles.rising) + 1, initial=0))
     found = np.zeros((2, len(times)))
 
     def transform(where):
-        rarity = -saddles.bound[where][0]
-        reach = _reach(scene, times[where][-1], rarity)
-        grid = ordinates(scene, degree, times[where][0], reach, _DEPTH + rarity)
-        return lambda z: first_passage(grid, z, lower, upper)
+        return problem.transform(resolution, times[where], -saddles.bound[where][0])
 
     def around_poles(where, first=0.0):
         """Contour to the right of the poles, of which `first` is the largest."""
@@ -223,7 +264,7 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
         found[0, here] = _probability(transform(here), around_poles(here), times[here])
     found[1] = 1 - found[0]
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
-    if late < len(times) and np.isfinite(lower) and np.isfinite(upper):
+    if late < len(times) and problem.relative and problem.two_sided:
         pole = _leading_pole(transform(slice(late, None)), times[late])
         for here in _windows(late, len(times), (times, _WINDOW)):
             found[1, here] = _survival(transform(here), around_poles(here, pole), times[here])

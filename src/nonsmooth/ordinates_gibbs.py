@@ -102,10 +102,12 @@ def gibbs_ordinates(scene, ends, level):
         order = np.concatenate([*moving, np.delete(np.arange(size), np.concatenate(moving))])
         generator[parity] = sp.block_array(blocks, format="csr")[order][:, order].tocsc()
         start[parity] = np.hstack(row)[0][order]
+    above = masses[0][len(masses[0]) // 2 :]
+    way = math.sqrt((above @ g[0] ** 2) / above.sum()) / scene.damping
     counts = [len(kept[k % 2]) for k in range(many)]
     ones = np.repeat(np.arange(many) == 0, counts).astype(float)
     speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
-    return PlaneOrdinates(speeds, ones, generator, start)
+    return PlaneOrdinates(speeds, ones, way, generator, start)
 
 
 def _edges(scene, end, level):

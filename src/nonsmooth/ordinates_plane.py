@@ -36,6 +36,8 @@ class PlaneOrdinates:
         g at the moving nodes.
     ones : numpy.ndarray, shape (k,)
         The function 1 there.
+    way : float
+        Standard deviation of g times the relaxation time of the damping.
     generator : dict
         A for each parity, the moving nodes first, sparse.
     start : dict
@@ -44,6 +46,7 @@ class PlaneOrdinates:
 
     speeds: np.ndarray
     ones: np.ndarray
+    way: float
     generator: dict
     start: dict
 
@@ -112,7 +115,8 @@ def plane_ordinates(scene, ends, level, time):
     moving = _moving(solve, g, start[EVEN], time)
     order = np.append(moving, np.delete(np.arange(half), moving))
     generator = {parity: solve.matrix(parity)[order][:, order].tocsc() for parity in (ODD, EVEN)}
-    return PlaneOrdinates(g[moving], np.ones(len(moving)), generator, {p: start[p][order] for p in (ODD, EVEN)})
+    way = math.sqrt(np.abs(2 * solve.fold(solve.stationary())) @ g**2) / scene.damping
+    return PlaneOrdinates(g[moving], np.ones(len(moving)), way, generator, {p: start[p][order] for p in (ODD, EVEN)})
 
 
 def _moving(solve, g, start, time):

@@ -43,7 +43,7 @@ class Slab:
 
 
 def slab(grid, z, thickness, doublings):
-    """Make a slab of finite thickness, its error of the order 4^-doublings.
+    """Make a slab of finite thickness, its error of the order 8^-doublings in smooth modes.
 
     Parameters
     ----------
@@ -57,10 +57,12 @@ def slab(grid, z, thickness, doublings):
     Slab
     """
     thin = thickness / 2**doublings
-    # extrapolated from one step and two, which damps all that decays within the thin slab
-    whole, half = _step(grid, z, thin), _step(grid, z, thin / 2).doubled()
+    # extrapolated from one step, two and four, which damps all that decays within the thin slab
+    one, two, four = _step(grid, z, thin), _step(grid, z, thin / 2), _step(grid, z, thin / 4)
+    two, four = two.doubled(), four.doubled().doubled()
     made = Slab(
-        2 * half.reflection - whole.reflection, 2 * half.transmission - whole.transmission
+        (one.reflection - 6 * two.reflection + 8 * four.reflection) / 3,
+        (one.transmission - 6 * two.transmission + 8 * four.transmission) / 3,
     )
     for _ in range(doublings):
         made = made.doubled()
