@@ -26,13 +26,12 @@ _LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.
 _LOOSE = 1e-4  # tolerance that the first levels may meet
 _PER_DECADE = 12  # nodes more for each decade of times
 _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
-# last time over first time, of a contour; while the probability rises, and the rise then
-_WINDOW, _NARROW, _GROWTH = 20.0, 2.5, 1e4
+# last time over first time, of a contour; the rise of the probability in one, until it has risen
+_WINDOW, _GROWTH = 20.0, 1e4
 _RISEN = 0.05  # bound of the probability at the end of the rise
 # after the rise the transform grows at most by exp(_TAME |z| t) where |z| t > _FAR, on the
 # asymptotes of the contours
 _TAME, _FAR, _ASYMPTOTE = 0.06, 6.0, np.pi - 0.9
-_LAST = 1e-12  # terms of a contour through a saddle, relative to the first
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
 _ROUNDING = 1e-13
 _SMALL = 1e-3  # survival probabilities below get contours of their own
@@ -106,6 +105,8 @@ class _Line:
     levels, loose = _LEVELS, _LOOSE
     # what is taken as 0: probabilities, and values of the transform
     negligible, rounded = 1e-14, 1e-70
+    # last time over first time of a contour while the probability rises, and terms left out there
+    narrow, last = 2.5, 1e-12
 
     @property
     def two_sided(self):
@@ -256,10 +257,10 @@ def _solve(problem, times, saddles, resolution, count, spacing):
         nodes = round(count + _PER_DECADE * np.log10(end / begin))
         return hyperbola(begin, end, nodes, _SECTOR, first)
 
-    for here in _windows(begins, rises, (times, _NARROW), (np.exp(saddles.bound), _GROWTH)):
+    for here in _windows(begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
         contour = through_saddle(saddles.place[last], saddles.width[last], spacing)
-        found[0, here] = _probability(transform(here), contour, times[here])
+        found[0, here] = _probability(transform(here), contour, times[here], problem.last)
     for here in _windows(rises, len(times), (times, _WINDOW)):
         found[0, here] = _probability(transform(here), around_poles(here), times[here])
     found[1] = 1 - found[0]
@@ -272,14 +273,14 @@ def _solve(problem, times, saddles, resolution, count, spacing):
     return np.clip(found, 0.0, 1.0)
 
 
-def _probability(transform, contour, times):
+def _probability(transform, contour, times, last):
     values = []
     for z, weight in zip(contour.nodes, contour.weights, strict=True):
         values.append(transform(z) / z)
         term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
         if len(values) == 1:
             largest = term
-        elif term < _LAST * largest:
+        elif term < last * largest:
             break
     return contour.until(len(values)).invert(np.array(values), times)
 

@@ -11,7 +11,7 @@ from nonsmooth.poisson import EVEN, ODD
 from nonsmooth.slab import half_space, slab
 
 # resolution of the grid; nodes of a contour for a single time, and their spacing during the rise
-_LEVELS = ((0, 7, 1.2), (1, 9, 1.0), (2, 10, 0.9), (3, 11, 0.85))
+_LEVELS = ((0, 7, 1.2), (1, 8, 1.05), (2, 9, 0.95), (3, 10, 0.9))
 _FEWEST = 7  # doublings at resolution 0
 _THIN = 0.1  # thinnest slab at resolution 0, relative to the way that g goes while it relaxes
 
@@ -41,7 +41,8 @@ class Plane:
     tol, loose = 1e-4, 0.0
     relative = False
     levels = _LEVELS
-    negligible, rounded = 1e-6, 1e-8
+    negligible, rounded = 2e-5, 1e-13
+    narrow, last = 4.0, 1e-7
 
     def __init__(self, scene, lower, upper):
         self.scene, self.lower, self.upper = scene, lower, upper

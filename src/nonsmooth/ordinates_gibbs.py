@@ -23,8 +23,8 @@ from nonsmooth.poisson import EVEN, ODD
 # Hermite degrees; degree in x; ends of the elements relative to the distance of the walls, and
 # within a wall relative to its depth
 _LEVELS = (
-    (10, 4, (0.4, 1.0), (0.25, 0.6, 1.0)),
-    (14, 5, (0.25, 1.0), (0.25, 0.6, 1.0)),
+    (12, 5, (0.3, 1.0), (0.5, 1.0)),
+    (16, 6, (0.3, 1.0), (0.5, 1.0)),
     (18, 6, (0.2, 1.0), (0.25, 0.6, 1.0)),
     (22, 6, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
 )
@@ -107,7 +107,7 @@ def gibbs_ordinates(scene, ends, level):
     counts = [len(kept[k % 2]) for k in range(many)]
     ones = np.repeat(np.arange(many) == 0, counts).astype(float)
     speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
-    return PlaneOrdinates(speeds, ones, way, generator, start)
+    return PlaneOrdinates(speeds, ones, way, size - len(speeds), generator, start)
 
 
 def _edges(scene, end, level):

@@ -14,12 +14,12 @@ import scipy.sparse.linalg as spla
 from nonsmooth import mesh
 from nonsmooth.elements import continuous, discontinuous
 from nonsmooth.generator import evaluate
-from nonsmooth.poisson import EVEN, ODD, Direct, factorise
+from nonsmooth.poisson import EVEN, ODD, Direct
 from nonsmooth.refinement import fitted
 
 _DEPTH = 14.0  # the density outside the box is of the order exp(-14) of its maximum
 # polynomial degree of the variable that noise drives and of the other; ratio of graded edges
-_LEVELS = ((4, 2, 4.0), (5, 3, 4.0), (6, 3, 3.0), (7, 4, 3.0))
+_LEVELS = ((4, 2, 4.0), (5, 3, 4.0), (6, 3, 4.0), (7, 4, 3.0))
 _FINEST = 0.1  # element where g = 0, relative to the end
 _FAST = 1.5  # the same in a variable that noise drives, in units of sigma sqrt(t)
 _WITHIN = (0.125, 0.35)  # edges in a wall, relative to its depth
@@ -38,8 +38,10 @@ class PlaneOrdinates:
         The function 1 there.
     way : float
         Standard deviation of g times the relaxation time of the damping.
+    held : int
+        Number of nodes that stand still, but cannot be eliminated, for they may be stuck.
     generator : dict
-        A for each parity, the moving nodes first, sparse.
+        A for each parity, sparse: the moving nodes, those held, and the others.
     start : dict
         Row vectors that interpolate functions of each parity at the start.
     """
@@ -47,23 +49,19 @@ class PlaneOrdinates:
     speeds: np.ndarray
     ones: np.ndarray
     way: float
+    held: int
     generator: dict
     start: dict
 
-    def step(self, z, parity, rate):
-        """Solve (rate + z - A) h = rate k, rate and k being 0 at the nodes that stand still.
-
-        Returns
-        -------
-        numpy.ndarray, shape (k, k)
-            From k to h at the moving nodes.
-        """
-        many, A = len(self.speeds), self.generator[parity]
-        diagonal = np.append(rate, np.zeros(A.shape[0] - many)) + z
-        matrix = sp.diags_array(diagonal, format="csc") - A
-        right = np.zeros((A.shape[0], many), diagonal.dtype)
-        right[np.arange(many), np.arange(many)] = rate
-        return factorise(matrix).solve(right)[:many]
+    def scattering(self, z, parity):
+        """Return z - A on the moving nodes and those held, having eliminated the others."""
+        many, A = len(self.speeds) + self.held, self.generator[parity]
+        matrix = z * sp.eye_array(A.shape[0], format="csc") - A
+        own = matrix[:many, :many].toarray()
+        if many >= A.shape[0]:
+            return own
+        across = matrix[many:, :many].toarray()
+        return own - matrix[:many, many:] @ spla.splu(matrix[many:, many:].tocsc()).solve(across)
 
     def start_row(self, z, parity):
         """Row vector that interpolates at the start from the moving nodes.
@@ -116,7 +114,7 @@ def plane_ordinates(scene, ends, level, time):
     order = np.append(moving, np.delete(np.arange(half), moving))
     generator = {parity: solve.matrix(parity)[order][:, order].tocsc() for parity in (ODD, EVEN)}
     way = math.sqrt(np.abs(2 * solve.fold(solve.stationary())) @ g**2) / scene.damping
-    return PlaneOrdinates(g[moving], np.ones(len(moving)), way, generator, {p: start[p][order] for p in (ODD, EVEN)})
+    return PlaneOrdinates(g[moving], np.ones(len(moving)), way, 0, generator, {p: start[p][order] for p in (ODD, EVEN)})
 
 
 def _moving(solve, g, start, time):

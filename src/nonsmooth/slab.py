@@ -58,7 +58,8 @@ def slab(grid, z, thickness, doublings):
     """
     thin = thickness / 2**doublings
     # extrapolated from one step, two and four, which damps all that decays within the thin slab
-    one, two, four = _step(grid, z, thin), _step(grid, z, thin / 2), _step(grid, z, thin / 4)
+    scattering = {parity: grid.scattering(z, parity) for parity in (EVEN, ODD)}
+    one, two, four = (_step(scattering, grid.speeds, thin / k) for k in (1, 2, 4))
     two, four = two.doubled(), four.doubled().doubled()
     made = Slab(
         (one.reflection - 6 * two.reflection + 8 * four.reflection) / 3,
@@ -84,9 +85,16 @@ def half_space(made):
     raise ToleranceError("the half space absorbs nothing; use method='monte_carlo'")
 
 
-def _step(grid, z, thickness):
+def _step(scattering, speeds, thickness):
     """Slab thinner than anything in it, where h is what it is on the side where the flow enters."""
-    rate, sign = np.abs(grid.speeds) / thickness, np.sign(grid.speeds)
-    even, odd = (grid.step(z, parity, rate) for parity in (EVEN, ODD))
-    odd = sign[:, None] * odd * sign
+    many, sign = len(speeds), np.sign(speeds)
+    rate = np.abs(speeds) / thickness
+    found = []
+    for parity in (EVEN, ODD):
+        matrix = scattering[parity].copy()
+        matrix[np.arange(many), np.arange(many)] += rate
+        right = np.zeros((len(matrix), many), matrix.dtype)
+        right[np.arange(many), np.arange(many)] = rate
+        found.append(np.linalg.solve(matrix, right)[:many])
+    even, odd = found[0], sign[:, None] * found[1] * sign
     return Slab((even - odd) / 2, (even + odd) / 2)
