@@ -262,7 +262,8 @@ def _solve(problem, times, saddles, resolution, count, spacing):
         contour = through_saddle(saddles.place[last], saddles.width[last], spacing)
         found[0, here] = _probability(transform(here), contour, times[here], problem.last)
     for here in _windows(rises, len(times), (times, _WINDOW)):
-        found[0, here] = _probability(transform(here), around_poles(here), times[here])
+        contour = around_poles(here)
+        found[0, here] = _probability(transform(here), contour, times[here], problem.last)
     found[1] = 1 - found[0]
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
     if late < len(times) and problem.relative and problem.two_sided:
