@@ -9,10 +9,10 @@ import numpy as np
 import scipy
 import xarray as xr
 
-from nonsmooth import schemes, spectral
+from nonsmooth import first_passage_plane, schemes, spectral
 from nonsmooth.brownian import asymptotic_crossing
 from nonsmooth.corrected import corrected_crossing
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.first_passage import spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
@@ -34,6 +34,8 @@ from nonsmooth.trajectories import (
     variance_of_fine,
 )
 from nonsmooth.variance import limit_variance, stationary_mean
+
+_AFFORDABLE = 1e-3  # tolerance of Monte Carlo that may stand in for the spectral method
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -209,8 +211,10 @@ def crossing_probability(
     p : float
         Scale of the functional central limit theorem, > 0.
     method : {"monte_carlo", "spectral", "asymptotic", "corrected"}, optional
-        ``"spectral"`` is deterministic, for one state variable and white noise: it is taken there
-        unless a parameter of another method is given, and ``"monte_carlo"`` elsewhere.
+        ``"spectral"`` is deterministic, for the state y with white noise and, in up to a minute or
+        two, for two state variables with finite n, odd g and drift, and white or Langevin noise: it
+        is taken there unless a parameter of another method is given, and ``"monte_carlo"``
+        elsewhere: for three and four state variables, and for two where it misses its tolerance.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p or p^(-3/2), see `corrected`; beyond the
         state y with white noise it needs odd g, order 1 and, with more than two variables,
@@ -218,7 +222,8 @@ def crossing_probability(
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (two standard errors are at most `tol`) and on the time
-        step (its bias is half). ``"spectral"``: 1e-7 unless given. The formulas have none.
+        step (its bias is half). ``"spectral"``: 1e-7 unless given, or 1e-4 for two variables. The
+        formulas have none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -239,8 +244,8 @@ def crossing_probability(
         limits `lower` and `upper`, and `step_bias`, the bias of the time step as measured by
         halving it, with its standard error
         `step_bias_error`; for ``"spectral"`` the difference of two resolutions, with `survival`
-        and `survival_error`, the complement to relative accuracy; for the formulas the error
-        inherited from gamma^2 and the other constants only, not the distance to the finite-p
+        and `survival_error`, the complement, for one variable to relative accuracy; for the
+        formulas the error inherited from gamma^2 and the other constants only, not the distance to the finite-p
         probability.
 
     Raises
@@ -261,6 +266,13 @@ def crossing_probability(
     given = {name: value for name, value in options.items() if value is not None}
     if method is None:
         method = _chosen(scene, given)
+        if method == "spectral" and first_passage_plane.applies(scene):
+            try:
+                return crossing_probability(scene, threshold, horizons, p, method, tol)
+            except ToleranceError:
+                if tol is not None and tol < _AFFORDABLE:
+                    raise
+                method = "monte_carlo"
     if method not in METHODS:
         raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
     for name in given:
@@ -280,7 +292,8 @@ def _chosen(scene, given):
     if "order" in given:
         return "corrected"
     sampled = {"step", "paths", "precision"} & given.keys()
-    return "spectral" if spectral.applies(scene) and not sampled else "monte_carlo"
+    deterministic = spectral.applies(scene) or first_passage_plane.applies(scene)
+    return "spectral" if deterministic and not sampled else "monte_carlo"
 
 
 def _monte_carlo(

@@ -75,8 +75,9 @@ def spectral_crossing(scene, lower, upper, times, tol):
     else:
         raise SceneError(
             "the spectral method needs the state (y) and white noise, or two state variables with "
-            f"finite n, odd g and drift, not ({', '.join(scene.state)}) with "
-            f"{scene.noise.title}; use method='monte_carlo'"
+            "finite n, odd g and drift, and white or Langevin noise, not "
+            f"({', '.join(scene.state)}) with {scene.noise.title} and n = {scene.n:g}; "
+            "use method='monte_carlo'"
         )
     try:
         return _refined(problem, times, problem.tol if tol is None else tol)
@@ -229,9 +230,7 @@ def _saddles(problem, times):
         place.append(z[best])
         # second derivative in z of the exponent, log z among it
         width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
-    return _Saddles(
-        np.array(place), np.array(width), np.maximum.accumulate(bound), np.array(grows)
-    )
+    return _Saddles(np.array(place), np.array(width), np.maximum.accumulate(bound), np.array(grows))
 
 
 def _windows(first, end, *growing):

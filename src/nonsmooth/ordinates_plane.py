@@ -114,7 +114,14 @@ def plane_ordinates(scene, ends, level, time):
     order = np.append(moving, np.delete(np.arange(half), moving))
     generator = {parity: solve.matrix(parity)[order][:, order].tocsc() for parity in (ODD, EVEN)}
     way = math.sqrt(np.abs(2 * solve.fold(solve.stationary())) @ g**2) / scene.damping
-    return PlaneOrdinates(g[moving], np.ones(len(moving)), way, 0, generator, {p: start[p][order] for p in (ODD, EVEN)})
+    return PlaneOrdinates(
+        g[moving],
+        np.ones(len(moving)),
+        way,
+        0,
+        generator,
+        {p: start[p][order] for p in (ODD, EVEN)},
+    )
 
 
 def _moving(solve, g, start, time):
@@ -148,7 +155,9 @@ def _positive(scene, symbol, end, ratio, time):
     if symbol == scene.noise.driven:
         if not (observed or force):
             return np.array([knot, end / 2, end])
-        return np.append(_graded(end, min(end / 9, _FAST * scene.noise.sigma * math.sqrt(time)), ratio), knot)
+        return np.append(
+            _graded(end, min(end / 9, _FAST * scene.noise.sigma * math.sqrt(time)), ratio), knot
+        )
     wall = knot < end and scene.mechanics.argument == symbol and symbol.name == "x"
     edges = np.array([end, knot])
     if wall:

@@ -89,7 +89,9 @@ def _of_all(grid, resolvent, balance):
     decay = rates.real > 0
 
     def decaying(chosen, rates, leaves):
-        return Modes(rates[chosen], vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen])
+        return Modes(
+            rates[chosen], vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen]
+        )
 
     return decaying(decay, rates, up), decaying(~decay, -rates, ~up)
 
