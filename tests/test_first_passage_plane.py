@@ -21,6 +21,7 @@ SCENES = {"friction": (FRICTION, 0.3), "plastic": (PLASTIC, 0.3), "obstacle": (O
 
 
 def grid_of(scene):
+    """Discretise a scene, coarsely."""
     ends = boxed(scene)
     if scene is OBSTACLE:
         return gibbs_ordinates(scene, ends, 0)
@@ -28,7 +29,7 @@ def grid_of(scene):
 
 
 def of_one_variable(line):
-    """The grid of a scene with one variable, in the form of two."""
+    """Write the grid of a scene with one variable as if it had two."""
     moving = line.moving
     order = np.append(moving, np.delete(np.arange(len(line.g)), moving))
     generator, start = {}, {}
@@ -89,12 +90,12 @@ class TestCrossing:
     """The inverted transform against what does not use it."""
 
     @pytest.mark.parametrize(
-        ("name", "paths"), [("friction", 8000), ("plastic", 2000), ("obstacle", 20000)]
+        ("name", "paths"), [("friction", 4000), ("plastic", 2000), ("obstacle", 20000)]
     )
     def test_agrees_with_monte_carlo(self, name, paths):
-        """Within 4.5 standard errors, false alarms 4e-5 in all, and the measured bias."""
+        """Within 4.5 standard errors, false alarms 2e-5 in all, and the measured bias."""
         scene, level = SCENES[name]
-        horizons = [2.0, 4.0]
+        horizons = [2.0]
         found = ns.crossing_probability(scene, level, horizons, 30, tol=2e-3)
         assert found.attrs["method"] == "spectral"
         assert np.all(found.probability_error < 2e-3)

@@ -242,11 +242,10 @@ def crossing_probability(
         Over `horizon`, with the method among its attributes: `probability` and
         `probability_error`, for ``"monte_carlo"`` the standard error, with the 95 % confidence
         limits `lower` and `upper`, and `step_bias`, the bias of the time step as measured by
-        halving it, with its standard error
-        `step_bias_error`; for ``"spectral"`` the difference of two resolutions, with `survival`
-        and `survival_error`, the complement, for one variable to relative accuracy; for the
-        formulas the error inherited from gamma^2 and the other constants only, not the distance to the finite-p
-        probability.
+        halving it, with its standard error `step_bias_error`; for ``"spectral"`` the difference
+        of two resolutions, with `survival` and `survival_error`, the complement, for one variable
+        to relative accuracy; for the formulas the error inherited from gamma^2 and the other
+        constants only, not the distance to the finite-p probability.
 
     Raises
     ------

@@ -81,7 +81,7 @@ def spectral_crossing(scene, lower, upper, times, tol):
         )
     try:
         return _refined(problem, times, problem.tol if tol is None else tol)
-    except np.linalg.LinAlgError as error:
+    except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
         raise ToleranceError(
             "the modes of the transport equation are not finite, as where g has a pole or the "
             f"start is far in the tails ({error}); use method='monte_carlo'"
@@ -106,6 +106,7 @@ class _Line:
     levels, loose = _LEVELS, _LOOSE
     # what is taken as 0: probabilities, and values of the transform
     negligible, rounded = 1e-14, 1e-70
+    inexact = 1e-13  # what no refinement shows, relative
     # last time over first time of a contour while the probability rises, and terms left out there
     narrow, last = 2.5, 1e-12
 
@@ -144,7 +145,7 @@ def _refined(problem, times, tol):
         coarse, solution = solution, _solve(problem, times, saddles, *level)
         error = np.abs(solution - coarse)
         error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
-        error += 1e-13 * solution + _UNDERFLOW
+        error += problem.inexact * solution + _UNDERFLOW
         error += _ROUNDING * problem.scene.damping * times * solution[0] * solution[1]
         error[0] = np.where(solution[0] == 0, np.maximum(problem.negligible, error[0]), error[0])
         # the same event: what is known of the rarer of the two is known of both
@@ -155,7 +156,7 @@ def _refined(problem, times, tol):
     else:
         raise ToleranceError(
             f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
-            "loosen tol"
+            "loosen tol, or use method='monte_carlo'"
         )
     return {
         "probability": solution[0],

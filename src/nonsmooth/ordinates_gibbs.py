@@ -182,7 +182,7 @@ def _half(matrix, parity):
 
 
 def _kept(g, masses, near):
-    """Indices of the nodes that carry the mean of |g|, and of those no farther than the start."""
+    """Find the nodes that carry the mean of |g|, and those no farther than the start."""
     flow = np.abs(g) * masses
     order = np.argsort(flow)
     carrying = np.cumsum(flow[order]) > _DROPPED * flow.sum()

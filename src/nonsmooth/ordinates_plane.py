@@ -125,7 +125,7 @@ def plane_ordinates(scene, ends, level, time):
 
 
 def _moving(solve, g, start, time):
-    """Indices of the nodes that carry the mean of |g|, of the stationary law and from the start."""
+    """Find the nodes that carry the mean of |g|, of the stationary law and from the start."""
     matrix = sp.eye_array(len(g)) / time - solve.matrix(EVEN)
     visited = spla.splu(matrix.T.tocsc()).solve(start) / time
     flow = np.abs(g) * (np.abs(2 * solve.fold(solve.stationary())) + np.abs(visited))
