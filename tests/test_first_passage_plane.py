@@ -79,6 +79,21 @@ class TestSlab:
         assert 0 < mean[0] < mean[1] < mean[2]
         assert mean[2] == pytest.approx(mean[1], rel=1e-4 * mean[2] + 1e-3)
 
+    def test_fast_noise_is_white(self):
+        """Ornstein-Uhlenbeck noise of the rate theta = sigma is white up to 1/theta.
+
+        The ratio 4 of the distances is met to a third, for the next order.
+        """
+        level, z = 0.6 * np.sqrt(10), 0.1
+        white = ordinates(ns.Scene("friction"), 9, 1.0)
+        exact = transport.first_passage(white, z, -level, level).real
+        gap = []
+        for theta in (10.0, 40.0):
+            scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(theta, theta))
+            grid = plane_ordinates(scene, boxed(scene), 1, 10.0)
+            gap.append(exact - plane.first_passage(grid, z, -level, level, 1))
+        assert gap[0] / gap[1] == pytest.approx(4, rel=1 / 3)
+
     def test_one_wall_far_away_is_none(self):
         """A wall that is not reached."""
         grid, z = grid_of(PLASTIC), 1.0
