@@ -134,16 +134,17 @@ def _moving(solve, g, start, time):
 
 
 def _axes(scene, ends, level, time):
-    degrees = dict(zip((True, False), _LEVELS[level], strict=False))
-    ratio = _LEVELS[level][-1]
+    driven_degree, degree, ratio = _LEVELS[level]
     made = {}
     for symbol in mesh.variables(scene):
-        end, driven = ends[symbol], symbol == scene.noise.driven
+        end = ends[symbol]
         edges = _positive(scene, symbol, end, ratio, time)
-        edges = np.sort(edges[(edges > 1e-12 * end) & (edges <= end)])
-        middle = [0.0]
-        edges = np.unique(np.concatenate([-edges, middle, edges]))
-        made[symbol] = (continuous if driven else discontinuous)(edges, degrees[driven])
+        edges = edges[(edges > 1e-12 * end) & (edges <= end)]
+        edges = np.unique(np.concatenate([-edges, [0.0], edges]))
+        if symbol == scene.noise.driven:
+            made[symbol] = continuous(edges, driven_degree)
+        else:
+            made[symbol] = discontinuous(edges, degree)
     return made
 
 
@@ -155,9 +156,8 @@ def _positive(scene, symbol, end, ratio, time):
     if symbol == scene.noise.driven:
         if not (observed or force):
             return np.array([knot, end / 2, end])
-        return np.append(
-            _graded(end, min(end / 9, _FAST * scene.noise.sigma * math.sqrt(time)), ratio), knot
-        )
+        finest = min(end / 9, _FAST * scene.noise.sigma * math.sqrt(time))
+        return np.append(_graded(end, finest, ratio), knot)
     wall = knot < end and scene.mechanics.argument == symbol and symbol.name == "x"
     edges = np.array([end, knot])
     if wall:
