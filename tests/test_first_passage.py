@@ -200,9 +200,35 @@ class TestSpectral:
             scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
         sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
         bias = np.abs(sample.step_bias) + sample.step_bias_error
-        found = exact(0.6, [2.0], 1, scene, tol=1e-3)
+        found = exact(0.6, [2.0], 1, scene, tol=1e-6)
         gap = np.abs(sample.probability - found.probability)
-        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-3
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize(("p", "tol"), [(1e4, 1e-7), (1e6, 1e-6)])
+    def test_late_times_of_one_wall(self, p, tol):
+        """The slow mode is 1e4 times the others; W is that of first order but for O(1/p)."""
+        found = exact((-np.inf, 0.6), [100.0], p, tol=tol)
+        formula = ns.crossing_probability(
+            FRICTION, (-np.inf, 0.6), [100.0], p, method="corrected"
+        ).probability
+        # (kappa / b)^2 / p and the stated error
+        bound = (0.2911259630 / 0.6) ** 2 / p + found.probability_error[0]
+        assert abs(found.probability[0] - formula[0]) < bound
+        assert found.probability_error[0] <= tol
+
+    def test_g_that_vanishes_on_a_half_line(self):
+        """Int g increases only, at twice the rate of y, while y > 0; false alarms 1e-5."""
+        scene = ns.Scene("friction", observable="y + abs(y)")
+        found = exact(0.6, [1.0], 1, scene)
+        sample = ns.crossing_probability(scene, 0.6, [1.0], 1, paths=20_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        gap = np.abs(sample.probability - found.probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    def test_a_start_out_of_reach(self):
+        """The message names the cure."""
+        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
+            exact(0.6, [1.0], 1, ns.Scene("friction", start={"y": 50.0}))
 
     def test_survival_decays_like_its_leading_pole(self):
         """To relative accuracy, far below the rounding of 1 - W."""

@@ -12,12 +12,13 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
-from nonsmooth import first_passage_plane
+from nonsmooth import first_passage_plane, models
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.expressions import vectorised
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
 from nonsmooth.scene import Scene
-from nonsmooth.spectral import applies
+from nonsmooth.spectral import applies, potential
 from nonsmooth.transport import first_passage
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
@@ -26,20 +27,28 @@ _LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.
 _LOOSE = 1e-4  # tolerance that the first levels may meet
 _PER_DECADE = 12  # nodes more for each decade of times
 _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
-# last time over first time, of a contour; the rise of the probability in one, until it has risen
-_WINDOW, _GROWTH = 20.0, 1e4
+# last time over first time, of a contour, at most and at least; the rise of the probability in one,
+# until it has risen
+_WINDOW, _SHORTEST, _GROWTH = 20.0, 3.0, 1e4
 _RISEN = 0.05  # bound of the probability at the end of the rise
-# after the rise the transform grows at most by exp(_TAME |z| t) where |z| t > _FAR, on the
-# asymptotes of the contours
-_TAME, _FAR, _ASYMPTOTE = 0.06, 6.0, np.pi - 0.9
+# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of a
+# contour have such an angle to the left of the vertical that the growth takes at most some share
+# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, whose angle
+# is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is
+# where exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
+_ARMS = (0.2, 0.4, 0.67)
+_STEEPEST = 0.0
+_TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
+_MOST = 80  # terms of a contour through a saddle
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
-_ROUNDING = 1e-13
+_ROUNDING = 1e-14
 _SMALL = 1e-3  # survival probabilities below get contours of their own
+_TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
 _UNDERFLOW = 1e-300
-_AXIS = 0.5  # spacing of log z at which the transform is taken on the axis
+_AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
 _DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
-_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z in the search for saddles
+_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z of the spline
 
 
 def spectral_crossing(scene, lower, upper, times, tol):
@@ -79,12 +88,17 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"({', '.join(scene.state)}) with {scene.noise.title} and n = {scene.n:g}; "
             "use method='monte_carlo'"
         )
+    if applies(scene) and _start_depth(scene) > _FARTHEST:
+        raise SceneError(
+            f"the start y = {scene.start['y']:g} is too far in the tails, where the modes of the "
+            "transport equation have no digits; start nearer or use method='monte_carlo'"
+        )
     try:
         return _refined(problem, times, problem.tol if tol is None else tol)
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
         raise ToleranceError(
-            "the modes of the transport equation are not finite, as where g has a pole or the "
-            f"start is far in the tails ({error}); use method='monte_carlo'"
+            f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
+            "use method='monte_carlo'"
         ) from None
 
 
@@ -115,18 +129,29 @@ class _Line:
         """Whether both levels are finite."""
         return np.isfinite(self.lower) and np.isfinite(self.upper)
 
-    def on_axis(self, z, depth):
-        """E exp(-z tau) for z > 0, of the order exp(-depth)."""
-        reach = self._reach(depth / z, depth / 2)
-        return self._on(_LEVELS[1][0], depth / z, reach, _DEPTH + depth)(z).real
+    @property
+    def cure(self):
+        """What to do where the tolerance is not met."""
+        if _start_depth(self.scene) <= _TAIL:
+            return "loosen tol"
+        return (
+            f"loosen tol, start nearer to the bulk than y = {self.scene.start['y']:g}, or use "
+            "method='monte_carlo'"
+        )
+
+    def near_axis(self, radius, depth):
+        """Return z -> E exp(-z tau) for |z| = radius; on the axis, of the order exp(-depth)."""
+        time = depth / radius
+        return self._on(_COARSE, time, self._reach(time, depth / 2), _DEPTH + depth)
 
     def transform(self, degree, times, rarity):
         """Return z -> E exp(-z tau) for probabilities from exp(-rarity) on, at given times."""
-        reach = self._reach(times[-1], rarity)
-        return self._on(degree, times[0], reach, _DEPTH + rarity)
+        return self._on(degree, times[0], self._reach(times[-1], rarity), _DEPTH + rarity)
 
     def _on(self, degree, time, reach, depth):
-        grid = ordinates(self.scene, degree, time, reach, depth)
+        grid = ordinates(
+            self.scene, degree, time, reach, depth, distances=(-self.lower, self.upper)
+        )
         return lambda z: first_passage(grid, z, self.lower, self.upper)
 
     def _reach(self, time, depth):
@@ -139,6 +164,7 @@ class _Line:
 
 def _refined(problem, times, tol):
     saddles = _saddles(problem, times)
+    worst = np.inf
     first = 0 if tol >= problem.loose else 1
     solution = _solve(problem, times, saddles, *problem.levels[first])
     for level in problem.levels[first + 1 :]:
@@ -152,18 +178,25 @@ def _refined(problem, times, tol):
         least = error.min(axis=0)
         error = np.where(error > 1e-12, least + 1e-15, error)
         if np.all(error <= tol):
+            return {
+                "probability": solution[0],
+                "probability_error": error[0],
+                "survival": solution[1],
+                "survival_error": error[1],
+            }
+        if not error.max() < worst:  # rounding: finer grids do not help
             break
-    else:
-        raise ToleranceError(
-            f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
-            "loosen tol, or use method='monte_carlo'"
-        )
-    return {
-        "probability": solution[0],
-        "probability_error": error[0],
-        "survival": solution[1],
-        "survival_error": error[1],
-    }
+        worst = error.max()
+    raise ToleranceError(
+        f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
+        f"{problem.cure}"
+    )
+
+
+def _start_depth(scene):
+    """Logarithm of the largest invariant density over that at the start."""
+    energy, _ = potential(scene)
+    return float(vectorised(energy, (models.y,))(scene.start.get("y", 0.0)))
 
 
 def _largest_nearby(errors, values, times):
@@ -187,51 +220,72 @@ class _Saddles:
         z, and the standard deviation along a contour through it, for each time.
     bound : numpy.ndarray, shape (k,)
         Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
-    growth : numpy.ndarray, shape (k,)
-        Largest log |F(z)| / |z| t far out on the asymptotes of a hyperbola.
+    tilt : numpy.ndarray, shape (k,)
+        Angle to the vertical of the arms of a contour through it.
+    rising : numpy.ndarray of bool, shape (k,)
+        Whether the probability is small or the transform grows too fast for a hyperbola.
     """
 
     place: np.ndarray
     width: np.ndarray
     bound: np.ndarray
-    growth: np.ndarray
-
-    @property
-    def rising(self):
-        """Whether the probability is small or the transform grows too fast for a hyperbola."""
-        return (self.bound < np.log(_RISEN)) | (self.growth > _TAME)
+    tilt: np.ndarray
+    rising: np.ndarray
 
 
 def _saddles(problem, times):
     """Find them by a spline of the transform on the axis."""
     first, last = np.log([0.1 / times[-1], _LARGEST / times[0]])
-    log_z, log_F = np.arange(first, last + _AXIS, _AXIS), []
+    log_z, log_F, arms = np.arange(first, last + _AXIS, _AXIS), [], []
     for z in np.exp(log_z):
         # the saddle of the time t is where z t = d log F / d log z, which is less than log F
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
-        value = problem.on_axis(z, depth)
+        transform = problem.near_axis(z, depth)
+        value = transform(z).real
         if value < problem.rounded:
             break
         log_F.append(np.log(value))
+        arms.append([_size(transform, z * np.exp(1j * (np.pi / 2 + arm))) for arm in _ARMS])
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        return _Saddles(nothing, nothing, nothing + np.log(problem.rounded), nothing)
+        return _Saddles(nothing, nothing, nothing + np.log(problem.rounded), nothing, nothing > 0)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
     z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
-    # as if -log F were a power of z about each z
-    power = np.divide(slope, cumulant, out=np.ones_like(slope), where=cumulant < 0)
-    growth = cumulant / z * np.cos(power * _ASYMPTOTE)
-    bound, place, width, grows = [], [], [], []
+    radii = np.exp(log_z[: len(log_F)])
+    growth = np.array(arms)
+    bound, place, width, tilt, rising = [], [], [], [], []
+
+    def tame(count, share, t, least):
+        decay = radii[:, None] * t * np.sin(_ARMS[:count])
+        seen = (radii[:, None] > least) & (decay < _NEGLIGIBLY)
+        return np.all((growth[:, :count] <= _HARMLESS + share * decay)[seen])
+
     for t in times:
         bound.append(np.min(z * t + cumulant))
-        grows.append(np.max(growth[z * t > _FAR], initial=0.0) / t)
+        rising.append(bound[-1] < np.log(_RISEN) or not tame(len(_ARMS), _TAME, t, _FAR / t))
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
+        fitting = [k for k in (1, 2) if z[best] < radii[-1] and tame(k, _TAMED, t, z[best])]
+        tilt.append(_ARMS[max(fitting) - 1] if fitting else _STEEPEST)
         # second derivative in z of the exponent, log z among it
         width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
-    return _Saddles(np.array(place), np.array(width), np.maximum.accumulate(bound), np.array(grows))
+    return _Saddles(
+        np.array(place),
+        np.array(width),
+        np.maximum.accumulate(bound),
+        np.array(tilt),
+        np.array(rising),
+    )
+
+
+def _size(transform, z):
+    """Logarithm of |F|; infinite where it cannot be told."""
+    try:
+        return np.log(abs(transform(z)))
+    except np.linalg.LinAlgError:
+        return np.inf
 
 
 def _windows(first, end, *growing):
@@ -253,13 +307,14 @@ def _solve(problem, times, saddles, resolution, count, spacing):
 
     def around_poles(where, first=0.0):
         """Contour to the right of the poles, of which `first` is the largest."""
-        begin, end = times[where][0], max(times[where][-1], 1.01 * times[where][0])
+        begin, end = times[where][0], max(times[where][-1], _SHORTEST * times[where][0])
         nodes = round(count + _PER_DECADE * np.log10(end / begin))
         return hyperbola(begin, end, nodes, _SECTOR, first)
 
     for here in _windows(begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
-        contour = through_saddle(saddles.place[last], saddles.width[last], spacing)
+        tilt = np.min(saddles.tilt[here])
+        contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
         found[0, here] = _probability(transform(here), contour, times[here], problem.last)
     for here in _windows(rises, len(times), (times, _WINDOW)):
         contour = around_poles(here)
@@ -281,7 +336,7 @@ def _probability(transform, contour, times, last):
         term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
         if len(values) == 1:
             largest = term
-        elif term < last * largest:
+        elif term < last * largest or len(values) == _MOST:
             break
     return contour.until(len(values)).invert(np.array(values), times)
 

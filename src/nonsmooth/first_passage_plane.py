@@ -39,6 +39,7 @@ class Plane:
     """
 
     tol, loose = 1e-4, 0.0
+    cure = "loosen tol, or use method='monte_carlo'"
     relative = False
     levels = _LEVELS
     negligible, rounded = 2e-5, 1e-13
@@ -50,9 +51,9 @@ class Plane:
         self._ends = boxed(scene)
         self._grids = {}
 
-    def on_axis(self, z, _depth):
-        """E exp(-z tau) for z > 0."""
-        return self._transform(0, z, 1 / self.scene.damping)
+    def near_axis(self, _radius, _depth):
+        """Return z -> E exp(-z tau) on the coarsest grid."""
+        return lambda z: self._transform(0, z, 1 / self.scene.damping)
 
     def transform(self, resolution, times, _rarity):
         """Return z -> E exp(-z tau)."""

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-_TILT = 0.5  # of the asymptotes of a contour through a saddle, to the left of the vertical
 _FARTHEST = 7.0  # parameter of its last node, exp(7) / 2 saddles away
 
 
@@ -85,7 +84,7 @@ def hyperbola(first, last, count, sector=0.0, pole=0.0):
     return Contour(nodes, mu * step / np.pi * 1j * np.cos(1j * u - a))
 
 
-def through_saddle(saddle, width, spacing):
+def through_saddle(saddle, width, spacing, tilt):
     """Choose the contour that crosses the axis at the saddle point of exp(z t) F(z).
 
     Parameters
@@ -96,6 +95,8 @@ def through_saddle(saddle, width, spacing):
         Standard deviation of exp(z t) F(z) along the contour, were it normal.
     spacing : float
         Of the nodes, relative to what ten digits need.
+    tilt : float
+        Angle of the asymptotes to the left of the vertical.
 
     Returns
     -------
@@ -104,8 +105,10 @@ def through_saddle(saddle, width, spacing):
     """
     # a normal integrand sampled at 0.85 standard deviations, a pole at 0 at a quarter of the saddle
     near = spacing * min(0.85 * width, 0.25 * saddle)
-    step = near / (saddle * np.cos(_TILT))
+    # steep arms leave less room beside them in which F does not grow
+    near *= min(1.0, 0.45 + tilt / 0.7)
+    step = near / (saddle * np.cos(tilt))
     u = (np.arange(int(_FARTHEST / step)) + 0.5) * step
-    bend = np.sin(1j * u - _TILT)
-    nodes = saddle * (1 + bend + np.sin(_TILT))
-    return Contour(nodes, saddle * step / np.pi * 1j * np.cos(1j * u - _TILT))
+    bend = np.sin(1j * u - tilt)
+    nodes = saddle * (1 + bend + np.sin(tilt))
+    return Contour(nodes, saddle * step / np.pi * 1j * np.cos(1j * u - tilt))

@@ -20,6 +20,7 @@ _DEEPEST = 40.0  # the grid ends where the density has fallen by exp(-40)
 _STEEPEST = 12.0  # logarithm of the ratio of the densities at the ends of an element
 _GRADING = 3.0
 _FINEST = 0.1  # width at a zero of g; the error is of the order of its cube
+_CROSSING, _DIGITS = 3.0, 26.0
 _PASSING = 1.0  # width at the start; the solution is smooth there
 _REACH = 12.0  # velocities reached within a time t are these many times sigma sqrt(t)
 
@@ -76,6 +77,21 @@ class Ordinates:
                 masses[inner, None] * values[inner],
             )
             return solution
+        return self.regular(z, values) + (masses @ values / z if z != 0 else 0.0)
+
+    def regular(self, z, values):
+        """Solve (z - A) u = f in even functions but for E f / z: what is finite as z -> 0.
+
+        Parameters
+        ----------
+        z, values
+            As of `resolvent`.
+
+        Returns
+        -------
+        numpy.ndarray, shape (k, c)
+        """
+        masses, stiffness = self.masses, self.stiffness[EVEN]
         # the difference to the value at the likeliest node, and that value from the mean: what is
         # left of stiffness is regular, however small z
         pin = np.argmax(masses)
@@ -85,8 +101,7 @@ class Ordinates:
         matrix = stiffness[np.ix_(rest, rest)] + z * (np.diag(weights) - np.outer(weights, weights))
         difference = np.zeros(values.shape, np.result_type(values, z, float))
         difference[rest] = _solve_scaled(matrix, weights[:, None] * (values[rest] - mean))
-        level = (mean / z if z != 0 else 0.0) - masses @ difference
-        return difference + level
+        return difference - masses @ difference
 
 
 def _solve_scaled(matrix, right):
@@ -94,7 +109,15 @@ def _solve_scaled(matrix, right):
     return scale[:, None] * np.linalg.solve(matrix * np.outer(scale, scale), scale[:, None] * right)
 
 
-def ordinates(scene, degree, time, reach=np.inf, deepest=_DEEPEST, grading=_GRADING):
+def ordinates(
+    scene,
+    degree,
+    time,
+    reach=np.inf,
+    deepest=_DEEPEST,
+    grading=_GRADING,
+    distances=(np.inf, np.inf),
+):
     """Discretise a scene with the state y.
 
     Parameters
@@ -110,6 +133,8 @@ def ordinates(scene, degree, time, reach=np.inf, deepest=_DEEPEST, grading=_GRAD
         The grid ends where the density has fallen by exp(-deepest), "1".
     grading : float
         Greatest width of an element over its distance to a zero of g and to the start.
+    distances : (float, float)
+        To the lower and to the upper wall.
 
     Returns
     -------
@@ -128,6 +153,7 @@ def ordinates(scene, degree, time, reach=np.inf, deepest=_DEEPEST, grading=_GRAD
         reach,
         deepest,
         grading,
+        distances,
     )
     axis = continuous(edges, degree)
     y = axis.nodes
@@ -153,6 +179,15 @@ def ordinates(scene, degree, time, reach=np.inf, deepest=_DEEPEST, grading=_GRAD
     return Ordinates(True, y[upper], g[upper], 2 * own * masses[upper], halves, start)
 
 
+def _ends_of_zeros(g, places, end):
+    """Those of the places at which g vanishes, but not on both sides."""
+    places = np.unique(places)
+    beside = np.abs(g(places[:, None] + np.array([-1e-9, 1e-9]) * end))
+    # a zero that was bisected is not exact; next to it g is small, next to a pole or a kink not
+    vanishes = np.abs(g(places)) <= np.max(beside, axis=1)
+    return places[vanishes & np.any(beside > 0, axis=1)]
+
+
 def _stiffness(axis, degree, density):
     """<phi_i', phi_j'> by the elements' own quadrature."""
     _, weights, slope = lobatto(degree)
@@ -165,7 +200,7 @@ def _stiffness(axis, degree, density):
     return matrix
 
 
-def _edges(scene, depth, kinks, switches, time, reach, deepest, grading):
+def _edges(scene, depth, kinks, switches, time, reach, deepest, grading, distances):
     """Edges on kinks and on zeros of g, graded towards these and towards the start."""
     start = scene.start.get("y", 0.0)
     end = scene.noise.sigma * np.sqrt(deepest / scene.damping)
@@ -180,9 +215,25 @@ def _edges(scene, depth, kinks, switches, time, reach, deepest, grading):
     inside = np.linspace(-end, end, 501)
     functions = [vectorised(f, (models.y,)) for f in switches]
     zeros, *others = [quadrature.sign_changes(f, inside) for f in functions]
+    zeros = _ends_of_zeros(functions[0], np.concatenate([zeros, *others]), end)
     starts = [start, -start] if scene.is_odd() else [start]
     singular = np.append(zeros, starts)
     finest = np.append(np.full(len(zeros), _FINEST), np.full(len(starts), _PASSING)) * fine
+    g = functions[0]
+
+    def crossing_width(y):
+        """Spread of the velocities of paths that go from y to a wall; wider where they are rare."""
+        flow = g(y)
+        lower, upper = (min(distances),) * 2 if scene.is_odd() else distances
+        distance = np.where(flow > 0, upper, lower)
+        share = np.clip((deepest - depth(y)) / _DIGITS, 0.1, 1.0)
+        return (
+            _CROSSING
+            * scene.noise.sigma
+            * np.sqrt(distance / np.maximum(np.abs(flow), 1e-300))
+            / share
+        )
+
     edges = np.concatenate([[-end, 0.0, end], kinks, zeros, *others])
     edges = np.unique(edges[np.abs(edges) <= end])
     edges = edges[np.append(True, np.diff(edges) > 1e-12 * end)]
@@ -192,6 +243,7 @@ def _edges(scene, depth, kinks, switches, time, reach, deepest, grading):
         left, right = edges[:-1], edges[1:]
         distance = np.maximum(left[:, None] - singular, singular - right[:, None])
         allowed = np.min(np.maximum(finest, grading * distance), axis=1)
+        allowed = np.minimum(allowed, np.minimum(crossing_width(left), crossing_width(right)))
         steep = np.abs(depth(right) - depth(left)) > _STEEPEST
         split = (right - left > 1.001 * allowed) | steep
         if not split.any():

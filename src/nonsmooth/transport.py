@@ -13,6 +13,7 @@ import numpy as np
 from nonsmooth.poisson import EVEN, ODD
 
 _ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
+_SEPARATED, _POWERS = 1e3, 6  # slow eigenvalue over the others; steps until it is exact
 _DIRECTED = 0.1  # flux of a wave that only one wall sends, relative to the largest possible
 
 
@@ -52,17 +53,19 @@ def modes(grid, z):
     g = grid.g[moving]
     source = np.zeros((len(grid.g), len(moving)))
     source[moving, np.arange(len(moving))] = g
-    even = grid.resolvent(z, EVEN, source)
     balance = np.sqrt(np.abs(g) / grid.masses[moving])
     if not grid.mirrored:
-        return _of_all(grid, even, balance)
+        return _of_all(grid, grid.resolvent(z, EVEN, source), balance)
+    even, flux = grid.regular(z, source), grid.masses @ source
     odd = grid.resolvent(z, ODD, source)
-    squares, odd_parts = _eigen(odd[moving] @ even[moving], balance * np.sqrt(np.abs(g)))
+    squares, odd_parts, means = _pairs(
+        odd[moving] @ even[moving], odd[moving].sum(axis=1), flux, z, balance * np.sqrt(np.abs(g))
+    )
     # at real z, rounding may make the smallest negative: modes that never decay, instead of at once
     fast = np.abs(squares) < _ROUNDING * np.max(np.abs(squares))
     rates = 1 / np.sqrt(np.where(fast, np.abs(squares), squares).astype(complex))
     rates = np.where(rates.real < 0, -rates, rates)
-    even_parts = rates * (even @ odd_parts)
+    even_parts = rates * (even @ odd_parts + means)
     even_start = grid.start[EVEN] @ even_parts
     odd_start = grid.start[ODD] @ (rates * (odd @ even_parts[moving]))
     leaving = np.sign(g)[:, None] * odd_parts
@@ -72,6 +75,39 @@ def modes(grid, z):
         Modes(rates, weights * own, weights * other, even_start + odd_start),
         Modes(rates, weights * own, weights * other, even_start - odd_start),
     )
+
+
+def _pairs(regular, drift, flux, z, balance):
+    """Eigenpairs of regular + drift flux / z, and flux @ vectors / z.
+
+    Where the slow mode, about drift, is far above the others, its eigenvalue would drown them in
+    rounding. They are those of the inverse plus 1/s, s of the size of `regular`, by the formula of
+    Sherman and Morrison; the slow one follows by two steps of the power method.
+    """
+    vast = flux @ drift / z
+    size = 2 * np.linalg.norm(regular / balance[:, None] * balance, 2)
+    if abs(vast) < _SEPARATED * size:
+        values, vectors = _eigen(regular + np.outer(drift, flux / z), balance)
+        return values, vectors, flux @ vectors / z
+    bounded = np.linalg.inv(np.eye(len(drift)) + regular / size)
+    lost, left = bounded @ drift, flux @ bounded
+    shifted = size * (
+        np.eye(len(drift)) - bounded + np.outer(lost, left) / (z * size + left @ drift)
+    )
+    values, vectors = (part.astype(complex) for part in _eigen(shifted, balance))
+    slow = np.argmin(np.abs(values - size))
+    inverses = 1 / values - 1 / size
+    inverses[slow] = 1 / vast
+    values = 1 / inverses
+    weighted = drift / balance**2
+    means = weighted @ (vectors * values - regular @ vectors) / (weighted @ drift)
+    mode = drift
+    for _ in range(_POWERS):
+        mode = regular @ mode + drift * (flux @ mode / z)
+        values[slow] = flux @ mode / (flux @ drift)
+        mode = mode / values[slow]
+    vectors[:, slow], means[slow] = mode, flux @ mode / z
+    return values, vectors, means
 
 
 def _eigen(matrix, balance):
@@ -137,7 +173,7 @@ def first_passage(grid, z, lower, upper):
 
 
 def _of_one_wall(wall, opposite, distance, leaving, entering, right):
-    """The same where the other wall is infinitely far.
+    """Sum the modes where the other wall is infinitely far.
 
     The solution is continued from Re z > 0, where modes decay as they leave. Beyond, those that the
     end of the grid reflects may grow: they belong to a wall by the sign of their flux <phi, g phi>,
