@@ -300,7 +300,7 @@ class TestSpectral:
             (FRICTION, {"tol": 1e-2}, "monte_carlo"),  # 1 ms against a second
             (FRICTION, {"paths": 10}, "monte_carlo"),
             (FRICTION, {"order": 1}, "corrected"),
-            (ns.Scene("friction", "langevin"), {"tol": 0.1}, "monte_carlo"),
+            (ns.Scene("friction", "hamiltonian"), {"tol": 0.1}, "monte_carlo"),
         ],
     )
     def test_method_follows_from_what_is_given(self, scene, given, method):

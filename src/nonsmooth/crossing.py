@@ -9,11 +9,11 @@ import numpy as np
 import scipy
 import xarray as xr
 
-from nonsmooth import schemes, spectral
+from nonsmooth import schemes
 from nonsmooth.brownian import asymptotic_crossing
 from nonsmooth.corrected import corrected_crossing
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.first_passage import spectral_crossing
+from nonsmooth.first_passage import default_tolerance, spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
 from nonsmooth.streams import blocks, labelled
@@ -42,9 +42,9 @@ from nonsmooth.variance import limit_variance, stationary_mean
 
 _CONFIDENCE = 0.997  # of the pilot's limits of the probability
 # Seconds on one core, as measured: of a coarse step of a path, with all that comes on top, and of
-# the spectral method for each window of its contours, at tolerances that coarse levels meet or not
+# the spectral method for one and two variables for times that grow by the factor _WINDOW
 _STEP = 4e-9
-_WINDOW, _LOOSE = {True: 0.4, False: 0.85}, 1e-4
+_SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
 _SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
 _PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
 _LEAST = 0.03  # standard deviation of what no path of the pilot does
@@ -223,9 +223,11 @@ def crossing_probability(
     p : float
         Scale of the functional central limit theorem, > 0.
     method : {"monte_carlo", "spectral", "asymptotic", "corrected"}, optional
-        ``"spectral"`` is deterministic, for one state variable and white noise. It is taken there,
-        unless a method or a parameter of another one is given, or `tol` is so loose that
-        ``"monte_carlo"`` should be faster; elsewhere ``"monte_carlo"``.
+        ``"spectral"`` is deterministic, for the state y with white noise and, in up to a minute or
+        two, for two state variables with finite n, odd g and drift, and white or Langevin noise. It
+        is taken there, unless a method or a parameter of another one is given, or `tol` is so loose
+        that ``"monte_carlo"`` should be faster; ``"monte_carlo"`` elsewhere: for three and four
+        state variables, and for two where the solver misses its tolerance.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p, p^(-3/2) or p^(-2), see `corrected`; beyond
         the state y with white noise it needs odd g, order 1 and, with more than two variables,
@@ -233,7 +235,8 @@ def crossing_probability(
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (three standard errors are at most three quarters of `tol`)
-        and on the time step (its bias is a quarter). ``"spectral"``: 1e-7 unless given.
+        and on the time step (its bias is a quarter). ``"spectral"``: 1e-7 unless given, or
+        1e-4 for two variables.
         ``"corrected"``: any error is returned unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
@@ -253,11 +256,11 @@ def crossing_probability(
         Over `horizon`, with the method among its attributes: `probability` and
         `probability_error`, for ``"monte_carlo"`` the standard error, with the 95 % confidence
         limits `lower` and `upper`, and `step_bias`, the bias of the time step as measured by
-        halving it, with its standard error
-        `step_bias_error`; for ``"spectral"`` the difference of two resolutions, with `survival`
-        and `survival_error`, the complement to relative accuracy; for ``"corrected"`` a bound
-        of the distance to the probability at this p, from the size of the next corrections; for
-        ``"asymptotic"`` the error inherited from gamma^2 only, not the distance to a finite p.
+        halving it, with its standard error `step_bias_error`; for ``"spectral"`` the difference
+        of two resolutions, with `survival` and `survival_error`, the complement, for one variable
+        to relative accuracy; for ``"corrected"`` a bound of the distance to the probability at
+        this p, from the size of the next corrections; for ``"asymptotic"`` the error inherited
+        from gamma^2 only, not the distance to a finite p.
 
     Raises
     ------
@@ -313,20 +316,16 @@ def _attempts(scene, horizons, p, given):
     """
     if "order" in given:
         return [("corrected", {})]
-    solvers = {
-        name: seconds(horizons, given.get("tol", 0.0))
-        for name, (applies, seconds) in SOLVERS.items()
-        if applies(scene) and not {"step", "paths", "precision"} & given.keys()
-    }
-    if not solvers:
+    default = default_tolerance(scene)
+    if default is None or {"step", "paths", "precision"} & given.keys():
         return [("monte_carlo", {})]
-    solver = min(solvers, key=solvers.get)
-    if "tol" not in given:
-        return [(solver, {})]
-    attempts = [(solver, {})]
-    if given["tol"] >= _SAMPLED:
+    attempts = [("spectral", {})]
+    if given.get("tol", default) >= _SAMPLED:
         attempts.append(("monte_carlo", {"most": _PATIENCE}))
-    most = solvers[solver] / _STEP
+    if "tol" not in given:
+        return attempts
+    windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(_WINDOW)
+    most = windows * _SECONDS[len(scene.state)] / _STEP
     steps = p * horizons[-1] / coarse_step(scene)
     if (
         PILOT_PATHS * steps <= _PILOT_SHARE * most
@@ -334,10 +333,6 @@ def _attempts(scene, horizons, p, given):
     ):
         attempts.insert(0, ("monte_carlo", {"most": most}))
     return attempts
-
-
-def _spectral_seconds(horizons, tol):
-    return _WINDOW[tol >= _LOOSE] * (1 + np.log(horizons[-1] / horizons[0]) / np.log(5))
 
 
 def _monte_carlo(
@@ -421,7 +416,7 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
     return {"probability": value, "probability_error": error}, {}
 
 
-def _spectral(scene, threshold, horizons, p, seed, threads, tol=1e-7):
+def _spectral(scene, threshold, horizons, p, seed, threads, tol=None):
     lower, upper = np.sqrt(p) * np.array(threshold)
     return spectral_crossing(scene, lower, upper, p * horizons, tol), {}
 
@@ -430,10 +425,6 @@ def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
     value, error = corrected_crossing(scene, *threshold, horizons, p, order, tol, seed, threads)
     return {"probability": value, "probability_error": error}, {}
 
-
-# The deterministic methods that can promise `tol`: where each applies, and the seconds it is
-# expected to take for (horizons, tol).
-SOLVERS = {"spectral": (spectral.applies, _spectral_seconds)}
 
 # Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
 # the other parameters of `crossing_probability` that it has; it returns the variables over the

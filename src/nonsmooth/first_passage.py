@@ -1,6 +1,7 @@
-"""Distribution of the first time at which int_0^t g leaves an interval, for one-dimensional scenes.
+"""Distribution of the first time at which int_0^t g leaves an interval.
 
-The Laplace transform of `transport`, inverted on hyperbolic contours. A contour serves times of one
+Its Laplace transform, of `transport` for one state variable and of `first_passage_plane` for two,
+inverted on hyperbolic contours. A contour serves times of one
 window. Where the probability, or the survival probability, is small, its contour starts at the
 saddle point or at the leading pole instead of 0: the error is then relative.
 """
@@ -11,11 +12,12 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
-from nonsmooth import models
+from nonsmooth import first_passage_plane, models
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.expressions import vectorised
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
+from nonsmooth.scene import Scene
 from nonsmooth.spectral import applies, potential
 from nonsmooth.transport import first_passage
 
@@ -25,24 +27,24 @@ _LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.
 _LOOSE = 1e-4  # tolerance that the first levels may meet
 _PER_DECADE = 12  # nodes more for each decade of times
 _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
-# last time over first time, of a contour, at most and at least; while the probability rises, and
-# the rise then
-_WINDOW, _SHORTEST, _NARROW, _GROWTH = 20.0, 3.0, 2.5, 1e4
-_NEGLIGIBLE, _RISEN = 1e-14, 0.05  # bounds of the probability; below the first, it is taken as 0
-# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of
-# a contour have such an angle to the left of the vertical that the growth takes at most some share
-# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, at the
-# last angle, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is
+# last time over first time, of a contour, at most and at least; the rise of the probability in one,
+# until it has risen
+_WINDOW, _SHORTEST, _GROWTH = 20.0, 3.0, 1e4
+_RISEN = 0.05  # bound of the probability at the end of the rise
+# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of a
+# contour have such an angle to the left of the vertical that the growth takes at most some share
+# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, whose angle
+# is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is
 # where exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
 _TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
-_LAST, _MOST = 1e-12, 80  # terms of a contour through a saddle, relative to the first; their number
+_MOST = 80  # terms of a contour through a saddle
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula
 _ROUNDING = 1e-14
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
-_UNDERFLOW, _ROUNDED = 1e-300, 1e-70
+_UNDERFLOW = 1e-300
 _AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
 _DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
@@ -55,13 +57,13 @@ def spectral_crossing(scene, lower, upper, times, tol):
     Parameters
     ----------
     scene : Scene
-        With the state y and white noise.
+        With the state y and white noise, or one to which `first_passage_plane` applies.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite.
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
-    tol : float
-        Absolute error wanted.
+    tol : float or None
+        Absolute error wanted; 1e-7, or 1e-4 for two variables, unless given.
 
     Returns
     -------
@@ -71,40 +73,114 @@ def spectral_crossing(scene, lower, upper, times, tol):
     Raises
     ------
     SceneError
-        If the scene has more state variables, or other noise.
+        If the scene is of another kind.
     ToleranceError
         If `tol` is not met; the message has the error.
     """
-    if not applies(scene):
+    if applies(scene):
+        problem = _Line(scene, lower, upper)
+    elif first_passage_plane.applies(scene):
+        problem = first_passage_plane.Plane(scene, lower, upper)
+    else:
         raise SceneError(
-            f"the spectral method needs the state (y) and white noise, not "
-            f"({', '.join(scene.state)}) with {scene.noise.title}; use method='monte_carlo'"
+            "the spectral method needs the state (y) and white noise, or two state variables with "
+            "finite n, odd g and drift, and white or Langevin noise, not "
+            f"({', '.join(scene.state)}) with {scene.noise.title} and n = {scene.n:g}; "
+            "use method='monte_carlo'"
         )
-    if _start_depth(scene) > _FARTHEST:
+    if applies(scene) and _start_depth(scene) > _FARTHEST:
         raise SceneError(
             f"the start y = {scene.start['y']:g} is too far in the tails, where the modes of the "
             "transport equation have no digits; start nearer or use method='monte_carlo'"
         )
     try:
-        return _refined(scene, lower, upper, times, tol)
-    except np.linalg.LinAlgError as error:
+        return _refined(problem, times, problem.tol if tol is None else tol)
+    except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
         raise ToleranceError(
             f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
             "use method='monte_carlo'"
         ) from None
 
 
-def _refined(scene, lower, upper, times, tol):
-    saddles = _saddles(scene, lower, upper, times)
+def default_tolerance(scene):
+    """Return the absolute error that `spectral_crossing` keeps unless told; None if it cannot."""
+    if applies(scene):
+        return _Line.tol
+    return first_passage_plane.Plane.tol if first_passage_plane.applies(scene) else None
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A scene with the state y and white noise, and an interval.
+
+    Attributes
+    ----------
+    relative : bool
+        Whether small probabilities are wanted to relative accuracy.
+    """
+
+    scene: Scene
+    lower: float
+    upper: float
+    tol = 1e-7
+    relative = True
+    levels, loose = _LEVELS, _LOOSE
+    # what is taken as 0: probabilities, and values of the transform
+    negligible, rounded = 1e-14, 1e-70
+    inexact = 1e-13  # what no refinement shows, relative
+    # last time over first time of a contour while the probability rises, and terms left out there
+    narrow, last = 2.5, 1e-12
+
+    @property
+    def two_sided(self):
+        """Whether both levels are finite."""
+        return np.isfinite(self.lower) and np.isfinite(self.upper)
+
+    @property
+    def cure(self):
+        """What to do where the tolerance is not met."""
+        if _start_depth(self.scene) <= _TAIL:
+            return "loosen tol"
+        return (
+            f"loosen tol, start nearer to the bulk than y = {self.scene.start['y']:g}, or use "
+            "method='monte_carlo'"
+        )
+
+    def near_axis(self, radius, depth):
+        """Return z -> E exp(-z tau) for |z| = radius; on the axis, of the order exp(-depth)."""
+        time = depth / radius
+        return self._on(_COARSE, time, self._reach(time, depth / 2), _DEPTH + depth)
+
+    def transform(self, degree, times, rarity):
+        """Return z -> E exp(-z tau) for probabilities from exp(-rarity) on, at given times."""
+        return self._on(degree, times[0], self._reach(times[-1], rarity), _DEPTH + rarity)
+
+    def _on(self, degree, time, reach, depth):
+        grid = ordinates(
+            self.scene, degree, time, reach, depth, distances=(-self.lower, self.upper)
+        )
+        return lambda z: first_passage(grid, z, self.lower, self.upper)
+
+    def _reach(self, time, depth):
+        """Change of velocity that is exceeded by `time` with at most 4 exp(-depth - _SPARE).
+
+        That of Brownian motion without drift, which points to the origin.
+        """
+        return self.scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
+
+
+def _refined(problem, times, tol):
+    saddles = _saddles(problem, times)
     worst = np.inf
-    first = 0 if tol >= _LOOSE else 1
-    solution = _solve(scene, lower, upper, times, saddles, *_LEVELS[first])
-    for level in _LEVELS[first + 1 :]:
-        coarse, solution = solution, _solve(scene, lower, upper, times, saddles, *level)
-        error = _largest_nearby(np.abs(solution - coarse), solution, times)
-        error += 1e-13 * solution + _UNDERFLOW
-        error += _ROUNDING * scene.damping * times * solution[0] * solution[1]
-        error[0] = np.where(solution[0] == 0, np.maximum(_NEGLIGIBLE, error[0]), error[0])
+    first = 0 if tol >= problem.loose else 1
+    solution = _solve(problem, times, saddles, *problem.levels[first])
+    for level in problem.levels[first + 1 :]:
+        coarse, solution = solution, _solve(problem, times, saddles, *level)
+        error = np.abs(solution - coarse)
+        error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
+        error += problem.inexact * solution + _UNDERFLOW
+        error += _ROUNDING * problem.scene.damping * times * solution[0] * solution[1]
+        error[0] = np.where(solution[0] == 0, np.maximum(problem.negligible, error[0]), error[0])
         # the same event: what is known of the rarer of the two is known of both
         least = error.min(axis=0)
         error = np.where(error > 1e-12, least + 1e-15, error)
@@ -118,12 +194,9 @@ def _refined(scene, lower, upper, times, tol):
         if not error.max() < worst:  # rounding: finer grids do not help
             break
         worst = error.max()
-    cure = "loosen tol"
-    if _start_depth(scene) > _TAIL:
-        cure += f", start nearer to the bulk than y = {scene.start['y']:g}, or use "
-        cure += "method='monte_carlo'"
     raise ToleranceError(
-        f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; {cure}"
+        f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
+        f"{problem.cure}"
     )
 
 
@@ -167,31 +240,22 @@ class _Saddles:
     rising: np.ndarray
 
 
-def _saddles(scene, lower, upper, times):
+def _saddles(problem, times):
     """Find them by a spline of the transform on the axis."""
     first, last = np.log([0.1 / times[-1], _LARGEST / times[0]])
     log_z, log_F, arms = np.arange(first, last + _AXIS, _AXIS), [], []
     for z in np.exp(log_z):
         # the saddle of the time t is where z t = d log F / d log z, which is less than log F
         depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
-        grid = ordinates(
-            scene,
-            _COARSE,
-            depth / z,
-            _reach(scene, depth / z, depth / 2),
-            _DEPTH + depth,
-            distances=(-lower, upper),
-        )
-        value = first_passage(grid, z, lower, upper).real
-        if value < _ROUNDED:
+        transform = problem.near_axis(z, depth)
+        value = transform(z).real
+        if value < problem.rounded:
             break
         log_F.append(np.log(value))
-        arms.append(
-            [_size(grid, z * np.exp(1j * (np.pi / 2 + arm)), lower, upper) for arm in _ARMS]
-        )
+        arms.append([_size(transform, z * np.exp(1j * (np.pi / 2 + arm))) for arm in _ARMS])
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        return _Saddles(nothing, nothing, nothing + np.log(_ROUNDED), nothing, nothing > 0)
+        return _Saddles(nothing, nothing, nothing + np.log(problem.rounded), nothing, nothing > 0)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
@@ -223,20 +287,12 @@ def _saddles(scene, lower, upper, times):
     )
 
 
-def _size(grid, z, lower, upper):
+def _size(transform, z):
     """Logarithm of |F|; infinite where it cannot be told."""
     try:
-        return np.log(abs(first_passage(grid, z, lower, upper)))
+        return np.log(abs(transform(z)))
     except np.linalg.LinAlgError:
         return np.inf
-
-
-def _reach(scene, time, depth):
-    """Change of velocity that is exceeded by `time` with at most 4 exp(-depth - _SPARE).
-
-    That of Brownian motion without drift, which points to the origin.
-    """
-    return scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
 
 
 def _windows(first, end, *growing):
@@ -247,19 +303,14 @@ def _windows(first, end, *growing):
         first = int(last)
 
 
-def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
+def _solve(problem, times, saddles, resolution, count, spacing):
     """Probability and survival probability, shape (2, k)."""
-    begins = np.searchsorted(saddles.bound, np.log(_NEGLIGIBLE))
+    begins = np.searchsorted(saddles.bound, np.log(problem.negligible))
     rises = max(begins, np.max(np.flatnonzero(saddles.rising) + 1, initial=0))
     found = np.zeros((2, len(times)))
 
     def transform(where):
-        rarity = -saddles.bound[where][0]
-        reach = _reach(scene, times[where][-1], rarity)
-        grid = ordinates(
-            scene, degree, times[where][0], reach, _DEPTH + rarity, distances=(-lower, upper)
-        )
-        return lambda z: first_passage(grid, z, lower, upper)
+        return problem.transform(resolution, times[where], -saddles.bound[where][0])
 
     def around_poles(where, first=0.0):
         """Contour to the right of the poles, of which `first` is the largest."""
@@ -267,16 +318,17 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
         nodes = round(count + _PER_DECADE * np.log10(end / begin))
         return hyperbola(begin, end, nodes, _SECTOR, first)
 
-    for here in _windows(begins, rises, (times, _NARROW), (np.exp(saddles.bound), _GROWTH)):
+    for here in _windows(begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
         tilt = np.min(saddles.tilt[here])
         contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
-        found[0, here] = _probability(transform(here), contour, times[here])
+        found[0, here] = _probability(transform(here), contour, times[here], problem.last)
     for here in _windows(rises, len(times), (times, _WINDOW)):
-        found[0, here] = _probability(transform(here), around_poles(here), times[here])
+        contour = around_poles(here)
+        found[0, here] = _probability(transform(here), contour, times[here], problem.last)
     found[1] = 1 - found[0]
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
-    if late < len(times) and np.isfinite(lower) and np.isfinite(upper):
+    if late < len(times) and problem.relative and problem.two_sided:
         pole = _leading_pole(transform(slice(late, None)), times[late])
         for here in _windows(late, len(times), (times, _WINDOW)):
             found[1, here] = _survival(transform(here), around_poles(here, pole), times[here])
@@ -284,14 +336,14 @@ def _solve(scene, lower, upper, times, saddles, degree, count, spacing):
     return np.clip(found, 0.0, 1.0)
 
 
-def _probability(transform, contour, times):
+def _probability(transform, contour, times, last):
     values = []
     for z, weight in zip(contour.nodes, contour.weights, strict=True):
         values.append(transform(z) / z)
         term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
         if len(values) == 1:
             largest = term
-        elif term < _LAST * largest or len(values) == _MOST:
+        elif term < last * largest or len(values) == _MOST:
             break
     return contour.until(len(values)).invert(np.array(values), times)
 

@@ -1,0 +1,126 @@
+"""First passage for two state variables by doubling slabs."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import nonsmooth as ns
+from nonsmooth import first_passage_plane as plane
+from nonsmooth import transport
+from nonsmooth.errors import SceneError
+from nonsmooth.ordinates import ordinates
+from nonsmooth.ordinates_gibbs import gibbs_ordinates
+from nonsmooth.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
+from nonsmooth.poisson import EVEN, ODD
+from nonsmooth.slab import slab
+
+FRICTION = ns.Scene("friction", "langevin")
+PLASTIC = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
+OBSTACLE = ns.Scene("obstacle", potential="x**2/2", observable="x")
+SCENES = {"friction": (FRICTION, 0.3), "plastic": (PLASTIC, 0.3), "obstacle": (OBSTACLE, 0.8)}
+
+
+def grid_of(scene):
+    """Discretise a scene, coarsely."""
+    ends = boxed(scene)
+    if scene is OBSTACLE:
+        return gibbs_ordinates(scene, ends, 0)
+    return plane_ordinates(scene, ends, 0, 1.0)
+
+
+def of_one_variable(line):
+    """Write the grid of a scene with one variable as if it had two."""
+    moving = line.moving
+    order = np.append(moving, np.delete(np.arange(len(line.g)), moving))
+    generator, start = {}, {}
+    for parity in (ODD, EVEN):
+        kept = moving if parity == ODD else order  # odd functions are 0 at the origin
+        matrix = -line.stiffness[parity] / line.masses[:, None]
+        generator[parity] = sp.csc_array(matrix[np.ix_(kept, kept)])
+        start[parity] = line.start[parity][kept]
+    way = np.sqrt(line.masses @ line.g**2)
+    return PlaneOrdinates(line.g[moving], np.ones(len(moving)), way, 0, generator, start)
+
+
+class TestSlab:
+    """Doubling against what is known of slabs."""
+
+    @pytest.mark.parametrize("z", [0.02, 0.5, 0.3 + 2.0j])
+    @pytest.mark.parametrize("levels", [(-2.0, 2.0), (-1.0, 2.0), (-np.inf, 1.0), (-1.0, np.inf)])
+    def test_agrees_with_the_modes_of_one_variable(self, z, levels):
+        """On the same grid, whose modes are exact; half as thin a slab shows the error.
+
+        Of an order of 0.6 at least, for speeds go down to 0: then it is twice the difference.
+        """
+        line = ordinates(ns.Scene("friction"), 6, 1.0)
+        exact = transport.first_passage(line, z, *levels)
+        grid = of_one_variable(line)
+        coarse, fine = (plane.first_passage(grid, z, *levels, resolution=r) for r in (1, 2))
+        assert abs(fine - exact) <= 2 * abs(fine - coarse) + 1e-9
+        assert abs(fine - exact) < plane.Plane.tol / 5
+
+    @pytest.mark.parametrize("name", SCENES)
+    def test_is_passive_and_conserves(self, name):
+        """Constants are lost at the rate z only: 1 - (R + S) 1 is of the order z."""
+        grid = grid_of(SCENES[name][0])
+        for z in (1e-6, 1e-8):
+            made = slab(grid, z, 1.0, 8)
+            lost = grid.ones - (made.reflection + made.transmission) @ grid.ones
+            assert np.max(np.abs(lost)) < 1e3 * z + 1e-9
+
+    @pytest.mark.parametrize("name", SCENES)
+    def test_exits_surely(self, name):
+        """(1 - h) / z tends to the mean exit time, from below for it is convex."""
+        scene, level = SCENES[name]
+        grid = grid_of(scene)
+        mean = [
+            (1 - plane.first_passage(grid, z, -level, level, 1)) / z for z in (1e-2, 1e-4, 1e-6)
+        ]
+        assert 0 < mean[0] < mean[1] < mean[2]
+        assert mean[2] == pytest.approx(mean[1], rel=1e-4 * mean[2] + 1e-3)
+
+    def test_fast_noise_is_white(self):
+        """Ornstein-Uhlenbeck noise of the rate theta = sigma is white up to 1/theta.
+
+        The ratio 4 of the distances is met to a third, for the next order.
+        """
+        level, z = 0.6 * np.sqrt(10), 0.1
+        white = ordinates(ns.Scene("friction"), 9, 1.0)
+        exact = transport.first_passage(white, z, -level, level).real
+        gap = []
+        for theta in (10.0, 40.0):
+            scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(theta, theta))
+            grid = plane_ordinates(scene, boxed(scene), 1, 10.0)
+            gap.append(exact - plane.first_passage(grid, z, -level, level, 1))
+        assert gap[0] / gap[1] == pytest.approx(4, rel=1 / 3)
+
+    def test_one_wall_far_away_is_none(self):
+        """A wall that is not reached."""
+        grid, z = grid_of(PLASTIC), 1.0
+        far = plane.first_passage(grid, z, -40.0, 0.3, 0)
+        assert far == pytest.approx(plane.first_passage(grid, z, -np.inf, 0.3, 0), abs=1e-6)
+
+
+class TestCrossing:
+    """The inverted transform against what does not use it."""
+
+    @pytest.mark.parametrize(
+        ("name", "paths"), [("friction", 4000), ("plastic", 2000), ("obstacle", 20000)]
+    )
+    def test_agrees_with_monte_carlo(self, name, paths):
+        """Within 4.5 standard errors, false alarms 2e-5 in all, and the measured bias."""
+        scene, level = SCENES[name]
+        horizons = [2.0]
+        found = ns.crossing_probability(scene, level, horizons, 30, tol=2e-3)
+        assert found.attrs["method"] == "spectral"
+        assert np.all(found.probability_error < 2e-3)
+        sample = ns.crossing_probability(scene, level, horizons, 30, step=0.02, paths=paths, seed=7)
+        allowed = 4.5 * sample.probability_error + np.abs(sample.step_bias)
+        allowed += 4.5 * sample.step_bias_error + found.probability_error
+        assert np.all(np.abs(found.probability - sample.probability) < allowed)
+
+    def test_a_scene_of_four_variables_is_told_to_sample(self):
+        """The message names the method."""
+        scene = ns.Scene("elasto_plastic", "hamiltonian")
+        with pytest.raises(SceneError, match="monte_carlo"):
+            ns.crossing_probability(scene, 0.3, [1.0], 30, method="spectral")
