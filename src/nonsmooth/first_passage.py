@@ -31,11 +31,11 @@ _SECTOR = 0.6  # half angle about the negative axis, of the poles and of what gr
 # until it has risen
 _WINDOW, _SHORTEST, _GROWTH = 20.0, 3.0, 1e4
 _RISEN = 0.05  # bound of the probability at the end of the rise
-# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of a
-# contour have such an angle to the left of the vertical that the growth takes at most some share
-# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, whose angle
-# is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is
-# where exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
+# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of
+# a contour have such an angle to the left of the vertical that the growth takes at most some share
+# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, whose
+# angle is the last, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked
+# at is where exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make it grow by a factor only.
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
 _TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
