@@ -152,10 +152,10 @@ def test_projection_against_the_whole_exponential():
 
 def test_what_cannot_be_solved_is_refused(monkeypatch):
     """Three variables, n = inf, a tolerance out of reach, growth: one line each."""
-    with pytest.raises(SceneError, match="use simulate"):
-        ns.variance(ns.Scene("friction", "hamiltonian"), [1.0])
+    with pytest.raises(SceneError, match="method='monte_carlo'"):
+        ns.variance(ns.Scene("friction", "hamiltonian"), [1.0], method="deterministic")
     with pytest.raises(SceneError, match="n = inf"):
-        ns.variance(SCENES["obstacle"].with_n(np.inf), [1.0])
+        ns.variance(SCENES["obstacle"].with_n(np.inf), [1.0], method="deterministic")
     monkeypatch.setattr(transient, "_LARGEST", 3000)
     with pytest.raises(ToleranceError, match="at tau = 3 has an error of"):
         ns.variance(SCENES["obstacle"], [3.0], tol=1e-7)
@@ -177,7 +177,7 @@ def test_errors_hold_where_they_oscillate():
         start={"x": 0.5},
     )
     times = np.geomspace(0.01, 10, 16)
-    loose, tight = (ns.variance(scene, times, tol=tol) for tol in (1e-2, 1e-4))
+    loose, tight = (ns.variance(scene, times, tol, "deterministic") for tol in (1e-2, 1e-4))
     for name in "wv":
         apart = np.abs(loose[name] - tight[name])
         assert np.all(apart <= loose[name + "_error"] + tight[name + "_error"])

@@ -13,7 +13,7 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.poisson import EVEN, ODD
 
 _WANTED = 6  # eigenvalues computed; the slowest pair may be complex
-_FIT, _COARSE, _FINEST = 1, 0, 8  # levels: where the box is fitted, first and last
+_FIT, _COARSE, _FINEST = 1, 1, 8  # levels: where the box is fitted, first and last
 _MARGIN = 0.15  # of the box, to see whether it matters
 # relative; against linear scenes it comes to 2e-12, and what moves eigenvalues that coincide apart
 # to 2e-13
