@@ -40,8 +40,10 @@ _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
 _TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
 _MOST = 80  # terms of a contour through a saddle
-# of the decay per relaxation time of a slow crossing, as measured against the second order formula
-_ROUNDING = 1e-14
+# of the decay per relaxation time of a slow crossing, as measured against the second order formula;
+# without symmetry the slow mode is not apart
+_ROUNDING = {True: 1e-14, False: 1e-13}
+_SAFETY = {True: 1.0, False: 3.0}  # without symmetry levels do not converge regularly
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
 _UNDERFLOW = 1e-300
@@ -176,10 +178,11 @@ def _refined(problem, times, tol):
     solution = _solve(problem, times, saddles, *problem.levels[first])
     for level in problem.levels[first + 1 :]:
         coarse, solution = solution, _solve(problem, times, saddles, *level)
-        error = np.abs(solution - coarse)
+        odd = problem.scene.is_odd()
+        error = _SAFETY[odd] * np.abs(solution - coarse)
         error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
         error += problem.inexact * solution + _UNDERFLOW
-        error += _ROUNDING * problem.scene.damping * times * solution[0] * solution[1]
+        error += _ROUNDING[odd] * problem.scene.damping * times * solution[0] * solution[1]
         error[0] = np.where(solution[0] == 0, np.maximum(problem.negligible, error[0]), error[0])
         # the same event: what is known of the rarer of the two is known of both
         least = error.min(axis=0)

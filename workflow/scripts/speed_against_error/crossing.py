@@ -14,7 +14,7 @@ from nonsmooth.streams import labelled
 from nonsmooth.transport import first_passage
 from nonsmooth.work_precision import Case, measured, timed, unseeded
 
-SECTOR = 0.3  # half angle of the contour about the negative axis, as in `first_passage`
+SECTOR = 0.3  # half angle of the contour about the negative axis
 
 
 def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, tolerance, rounds):
@@ -56,6 +56,7 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
             ("asymptotic formula", 0, {"method": "asymptotic"}),
             ("corrected formula, order 1", 1, {"method": "corrected", "order": 1}),
             ("corrected formula, order 2", 2, {"method": "corrected", "order": 2}),
+            ("corrected formula, order 3", 3, {"method": "corrected", "order": 3}),
         ):
             run = timed(unseeded(_by), scene, threshold, horizon, scale, **options)
             cases.append(Case(panel, name, size, run))
