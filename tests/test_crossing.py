@@ -179,7 +179,7 @@ def test_tolerance_out_of_reach_is_refused_with_the_best_value():
     """1e13 paths would take for ever; the message says what can be had."""
     scene = ns.Scene("friction", "langevin")
     with pytest.raises(ToleranceError, match=r"W = .* use tol >="):
-        ns.crossing_probability(scene, 0.6, HORIZONS, tol=1e-7)
+        ns.crossing_probability(scene, 0.6, HORIZONS, tol=1e-7, method="monte_carlo")
 
 
 def test_divergence_is_an_error():

@@ -111,8 +111,7 @@ class TestCrossing:
         """Within 4.5 standard errors, false alarms 2e-5 in all, and the measured bias."""
         scene, level = SCENES[name]
         horizons = [2.0]
-        found = ns.crossing_probability(scene, level, horizons, 30, tol=2e-3)
-        assert found.attrs["method"] == "spectral"
+        found = ns.crossing_probability(scene, level, horizons, 30, method="spectral", tol=2e-3)
         assert np.all(found.probability_error < 2e-3)
         sample = ns.crossing_probability(scene, level, horizons, 30, step=0.02, paths=paths, seed=7)
         allowed = 4.5 * sample.probability_error + np.abs(sample.step_bias)

@@ -213,7 +213,10 @@ def _refined(scene, tol):
         error = combination.error + 2 * abs(larger - base) + residual * abs(value)
         if error <= tol * abs(value):
             break
-        cost = combination.refine(min(largest, left))
+        try:
+            cost = combination.refine(min(largest, left))
+        except ToleranceError:  # a finer grid on which the iteration does not converge
+            break
         left -= cost
         if not cost:
             break
