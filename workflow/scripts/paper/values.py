@@ -303,15 +303,12 @@ def _plasticity(deformation, variance, section):
                 "corrected": f"{float(run['corrected'][-1]):.3f}",
                 "corrected_largest": f"{corrected[np.argmax(np.abs(corrected))]:+.3f}",
                 "sampled": f"{sampled[-1]:.3f}",
-                "last": f"{difference[-1]:+.3f}",
-                "last_ratio": f"{abs(difference[-1]) / error[-1]:.0f}",
                 "largest": f"{difference[largest]:+.3f}",
                 "largest_ratio": f"{abs(difference[largest]) / error[largest]:.0f}",
                 "largest_at": f"{duration[largest]:g}",
                 "low_formula": f"{formula[least]:.4f}",
                 "low_sampled": f"{sampled[least]:.4f}",
                 "low_at": f"{duration[least]:g}",
-                "low_ratio": f"{abs(difference[least]) / error[least]:.0f}",
             }
         )
     return {
