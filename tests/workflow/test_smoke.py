@@ -90,16 +90,18 @@ def test_table_6_has_every_scene_within_its_errors(smoke_run):
 
 
 def test_the_code_in_the_paper_runs(smoke_run):
-    """And gives the formula's last probability of the middle limit, by another gamma^2."""
+    """And gives the corrected formula's last probability, by another gamma^2 and kappa."""
     results = smoke_run.folder / RESULTS
     code = json.loads((results / "paper" / "values.json").read_text())["plasticity"]["code"]
     lines = code.replace("tol=0.05", "tol=0.1").splitlines()
     space = {}
     exec("\n".join([*lines[:-1], f"found = {lines[-1]}"]), space)
     check = artifact.read(results / "plasticity" / "check.nc")
-    expected = check["probability"].sel(limit=space["limit"], duration=space["duration"])
+    expected = check["corrected"].sel(limit=space["limit"], duration=space["duration"])
     # a relative error of gamma^2 of 0.1 changes W_star by at most 0.05, as |d W / d log b| < 1
-    assert abs(space["found"] - float(expected)) < 0.05 + 0.025
+    constants = artifact.read(results / "plasticity" / "variance.nc")
+    lengths = float(constants["length_error"]) + space["kappa"].error
+    assert abs(space["found"] - float(expected)) < 0.05 + 0.025 + lengths / space["limit"]
     assert 0 < space["found"] < 1
 
 
