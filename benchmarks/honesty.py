@@ -106,8 +106,8 @@ def three_variables(rng):
 CLASSES = {
     "one variable": (one_variable, 60),
     "linear, two variables": (linear("white", 1e-5), 56),
-    "linear, three variables": (linear("langevin", 2e-2), 12),
-    "linear, four variables": (linear("hamiltonian", 1e-1), 4),
+    "linear, three variables": (linear("langevin", 1e-3), 12),
+    "linear, four variables": (linear("hamiltonian", 1e-2), 4),
     "balance, elasto-plastic": (yield_balance, 44),
     "balance, friction": (friction_balance, 32),
     "nonlinear, two variables": (nonlinear, 60),
@@ -120,10 +120,10 @@ def compare(draw, seed):
     scene, tol, reference = draw(np.random.default_rng(seed))
     began = time.perf_counter()
     try:
-        found = ns.asymptotic_variance(scene, tol)
+        found = ns.asymptotic_variance(scene, tol, "deterministic")
         seconds = time.perf_counter() - began
         if isinstance(reference, float):
-            tight = ns.asymptotic_variance(scene, tol / reference)
+            tight = ns.asymptotic_variance(scene, tol / reference, "deterministic")
             reference = tight.value, tight.error
     except ToleranceError as error:
         print(f"{seed}: {scene}: {error}", file=sys.stderr)
