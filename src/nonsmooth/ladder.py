@@ -12,7 +12,7 @@ from nonsmooth import refinement
 
 _HIGHEST = 4
 _MARGIN = 0.15  # of the box, to see whether it matters
-_SAFETY = 2.0  # times the difference of the first two levels, which may not converge yet
+_SAFETY = 2.0  # times the difference of two levels
 _RESIDUE = 1e-3  # of the tolerance, for rounding
 
 
@@ -33,8 +33,7 @@ def growth_on_ladder(scene, tol):
     Returns
     -------
     (value, error) or None
-        The error is the difference of the last two levels, that of the first two twice, and twice
-        what a larger box changes. None if `tol` is not met on the ladder, or levels do not
+        The error is twice the difference of the last two levels and what a larger box changes. None if `tol` is not met on the ladder, or levels do not
         converge: each must change gamma^2 by half of what the one before did.
     """
     grid = refinement.fitted(scene, math.log(1 / tol) + refinement.SPARE, 1)
@@ -46,8 +45,7 @@ def growth_on_ladder(scene, tol):
         before, change = change, abs(last - previous)
         if change > before / 2:
             return None
-        doubt = _SAFETY if math.isinf(before) else 1.0
-        error = doubt * change + _RESIDUE * tol * abs(last)
+        error = _SAFETY * change + _RESIDUE * tol * abs(last)
         if error <= tol * abs(last):
             if beyond is None:
                 larger = replace(below, margin=_MARGIN)
