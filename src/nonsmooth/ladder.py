@@ -33,8 +33,9 @@ def growth_on_ladder(scene, tol):
     Returns
     -------
     (value, error) or None
-        The error is twice the difference of the last two levels and what a larger box changes. None if `tol` is not met on the ladder, or levels do not
-        converge: each must change gamma^2 by half of what the one before did.
+        The error is twice the difference of the last two levels, and twice what a larger box
+        changes. None if `tol` is not met on the ladder, or levels do not converge: each must
+        change gamma^2 by half of what the one before did.
     """
     grid = refinement.fitted(scene, math.log(1 / tol) + refinement.SPARE, 1)
     grid = replace(grid, levels=dict.fromkeys(grid.levels, 0))
