@@ -176,9 +176,9 @@ def _refined(problem, times, tol):
     worst = np.inf
     first = 0 if tol >= problem.loose else 1
     solution = _solve(problem, times, saddles, *problem.levels[first])
+    odd = problem.scene.is_odd()
     for level in problem.levels[first + 1 :]:
         coarse, solution = solution, _solve(problem, times, saddles, *level)
-        odd = problem.scene.is_odd()
         error = _SAFETY[odd] * np.abs(solution - coarse)
         error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
         error += problem.inexact * solution + _UNDERFLOW

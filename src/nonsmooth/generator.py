@@ -33,6 +33,25 @@ def evaluate(expression, axes, points=None):
     return vectorised(expression, tuple(axes))(*grid).ravel()
 
 
+def start_row(scene, axes, side=1):
+    """Row vector that interpolates functions on a tensor grid at the start, or at its mirror image.
+
+    Parameters
+    ----------
+    scene : Scene
+    axes : dict
+        As for `evaluate`.
+    side : {1, -1}
+
+    Returns
+    -------
+    numpy.ndarray, shape (number of grid points,)
+    """
+    start = [side * scene.start.get(symbol.name, 0.0) for symbol in axes]
+    parts = [axis.interpolation(z) for axis, z in zip(axes.values(), start, strict=True)]
+    return reduce(np.kron, [part.toarray()[0] for part in parts])
+
+
 def assemble(scene, axes, equations=None):
     """Assemble the generator, or the part of it that belongs to some of the equations.
 

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.generator import evaluate
+from nonsmooth.generator import evaluate, start_row
 from nonsmooth.poisson import EVEN, ODD
 from nonsmooth.refinement import fitted, growth_to, raised, solver
 
@@ -154,11 +154,4 @@ def _milne(scene, grid):
     matrix = rows[:, None] * np.column_stack([np.ones(len(kept)), leaving])
     size = np.linalg.norm(matrix, axis=0)
     length = (np.linalg.solve(matrix / size, rows * np.sign(g) * u) / size)[0].real
-    return np.array([length, _at_start(scene, axes, solve.unfold(whole, ODD))])
-
-
-def _at_start(scene, axes, values):
-    row = np.ones((1, 1))
-    for symbol, axis in axes.items():
-        row = np.kron(row, axis.interpolation(scene.start.get(symbol.name, 0.0)).toarray())
-    return float(row[0] @ values)
+    return np.array([length, start_row(scene, axes) @ solve.unfold(whole, ODD)])

@@ -16,7 +16,7 @@ from numpy.polynomial import legendre
 from nonsmooth.elements import lagrange, lobatto
 from nonsmooth.expressions import vectorised
 from nonsmooth.models import x, y
-from nonsmooth.ordinates_plane import PlaneOrdinates
+from nonsmooth.ordinates_plane import DROPPED, PlaneOrdinates
 from nonsmooth.penalties import n as penalization
 from nonsmooth.poisson import EVEN, ODD
 
@@ -28,7 +28,6 @@ _LEVELS = (
     (18, 6, (0.2, 1.0), (0.25, 0.6, 1.0)),
     (22, 6, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
 )
-_DROPPED = 1e-5  # part of the mean of |g| of the nodes that are taken to stand still
 
 
 def applies(scene):
@@ -185,7 +184,7 @@ def _kept(g, masses, near):
     """Find the nodes that carry the mean of |g|, and those no farther than the start."""
     flow = np.abs(g) * masses
     order = np.argsort(flow)
-    carrying = np.cumsum(flow[order]) > _DROPPED * flow.sum()
+    carrying = np.cumsum(flow[order]) > DROPPED * flow.sum()
     return np.union1d(order[carrying], np.flatnonzero(near & (g != 0)))
 
 

@@ -13,7 +13,7 @@ import scipy.sparse.linalg as spla
 
 from nonsmooth import mesh
 from nonsmooth.elements import continuous, discontinuous
-from nonsmooth.generator import evaluate
+from nonsmooth.generator import evaluate, start_row
 from nonsmooth.poisson import EVEN, ODD, Direct
 from nonsmooth.refinement import fitted
 
@@ -23,7 +23,7 @@ _LEVELS = ((4, 2, 4.0), (5, 3, 4.0), (6, 3, 4.0), (7, 4, 3.0))
 _FINEST = 0.1  # element where g = 0, relative to the end
 _FAST = 1.5  # the same in a variable that noise drives, in units of sigma sqrt(t)
 _WITHIN = (0.125, 0.35)  # edges in a wall, relative to its depth
-_DROPPED = 1e-5  # part of the mean of |g| that nodes may carry that are taken to stand still
+DROPPED = 1e-5  # part of the mean of |g| that nodes may carry that are taken to stand still
 
 
 @dataclass(frozen=True)
@@ -105,10 +105,7 @@ def plane_ordinates(scene, ends, level, time):
     axes = _axes(scene, ends, level, time)
     solve = Direct(scene, axes, True)
     g = solve.fold(evaluate(scene.numerical_observable(), axes))
-    row = np.ones((1, 1))
-    for symbol, axis in axes.items():
-        row = np.kron(row, axis.interpolation(scene.start.get(symbol.name, 0.0)).toarray())
-    row, half = row[0], len(g)
+    row, half = start_row(scene, axes), len(g)
     start = {parity: row[:half] + parity * row[half:][::-1] for parity in (ODD, EVEN)}
     moving = _moving(solve, g, start[EVEN], time)
     order = np.append(moving, np.delete(np.arange(half), moving))
@@ -130,7 +127,7 @@ def _moving(solve, g, start, time):
     visited = spla.splu(matrix.T.tocsc()).solve(start) / time
     flow = np.abs(g) * (np.abs(2 * solve.fold(solve.stationary())) + np.abs(visited))
     order = np.argsort(flow)
-    return np.sort(order[np.cumsum(flow[order]) > _DROPPED * flow.sum()])
+    return np.sort(order[np.cumsum(flow[order]) > DROPPED * flow.sum()])
 
 
 def _axes(scene, ends, level, time):

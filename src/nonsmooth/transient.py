@@ -12,14 +12,13 @@ each. The pole 0 is the Poisson solver and knows the slowest modes; the others r
 
 import math
 from dataclasses import replace
-from functools import reduce
 
 import numpy as np
 import scipy.linalg
 
 from nonsmooth import mesh, refinement
 from nonsmooth.errors import ToleranceError
-from nonsmooth.generator import evaluate
+from nonsmooth.generator import evaluate, start_row
 from nonsmooth.poisson import EVEN, ODD
 
 _POLES = (0.0, 10.0)  # larger ones resolve earlier times, and what the grid does not
@@ -234,16 +233,12 @@ def _grows(matrix):
 
 def _at_start(scene, axes):
     """Return what evaluates functions (rows) of a parity at the starting point."""
-    start = np.array([scene.start.get(symbol.name, 0.0) for symbol in axes])
-
-    def point(where):
-        parts = [axis.interpolation(z) for axis, z in zip(axes.values(), where, strict=True)]
-        return reduce(np.kron, [part.toarray()[0] for part in parts])
+    start, mirrored = (start_row(scene, axes, side) for side in (1, -1))
 
     def at(solver, rows, parity):
         if not solver.mirrored:
-            return rows @ point(start)
-        whole = (point(start) + parity * point(-start)) / 2  # on faces, the mean of both sides
+            return rows @ start
+        whole = (start + parity * mirrored) / 2  # on faces, the mean of both sides
         half = rows.shape[1]
         return rows @ (whole[:half] + parity * whole[half:][::-1])
 
