@@ -20,25 +20,33 @@ _CENTRED = 1e-9  # largest mean of g, relative to its standard deviation
 
 @dataclass(frozen=True)
 class Walls:
-    """Constants of the expansion to the order p^(-1/2), of a self-adjoint generator.
+    """Constants of the expansion to the order 1/p, of a self-adjoint generator.
 
     Attributes
     ----------
     diffusion : float
         D = gamma^2 / 2.
     lower, upper : float
-        kappa of either wall.
+        kappa of either wall; upper - lower = C / D.
     skewness : float
         C = E[g u^2]; the third cumulant of int_0^t g grows like 6 C t.
-    poisson : float
-        u at the start.
+    dispersion : float
+        B = E[g r]; the logarithm of E exp(q int_0^t g) grows like (D q^2 + C q^3 + B q^4) t.
+    lower_corner, upper_corner : float
+        S, the dipole that the start of time leaves at either wall.
+    poisson, start : float
+        u and h at the start; A u = -g, A h = D - g u, A r = D u + C - g h.
     """
 
     diffusion: float
     lower: float
     upper: float
     skewness: float
+    dispersion: float
+    lower_corner: float
+    upper_corner: float
     poisson: float
+    start: float
 
 
 def walls(scene, tol=1e-8):
@@ -114,17 +122,29 @@ def _walls(scene, degree, mean):
     modes = spread_out(vectors) - (flux @ coupling @ vectors) / diffusion
     u = spread_out(flux)
     u = u - grid.masses @ u
-    lengths = []
+    h = grid.resolvent(0.0, EVEN, (g * u)[:, None])[:, 0]
+    skewness, square = grid.masses @ (g * u**2), grid.masses @ u**2
+    r = grid.resolvent(0.0, EVEN, (g * h - diffusion * u)[:, None])[:, 0]
+    means = grid.masses @ modes
+    lengths, corners = [], []
     for side in (-1, 1):
         leaving = np.flatnonzero(side * g > 0)
         decaying = np.argsort(-side * inverses)[: len(leaving) - 1]
         scale = np.sqrt(grid.masses[leaving])
         matrix = np.column_stack([np.ones(len(leaving)), modes[np.ix_(leaving, decaying)]])
         solution = np.linalg.solve(scale[:, None] * matrix, scale * side * u[leaving])
+        dipole = (means * np.abs(inverses))[decaying] @ solution[1:]
         lengths.append(float(solution[0]))
+        # of the other wall, whose layer, reflected, solves the adjoint problem at this one
+        corners.append(
+            float(square - solution[0] ** 2 / 2 + dipole - (skewness / diffusion) ** 2 / 2)
+        )
     return Walls(
         float(diffusion),
         *lengths,
-        float(grid.masses @ (g * u**2)),
+        float(skewness),
+        float(grid.masses @ (g * r)),
+        *corners[::-1],
         float(grid.start[EVEN] @ u),
+        float(grid.start[EVEN] @ h),
     )
