@@ -61,7 +61,7 @@ def brownian_exit(b, T, lower):
     b, lower : float
         lower < 0 < b, each possibly infinite.
     T : numpy.ndarray
-        Horizons, "1"; 0 where they are not positive.
+        Horizons, "1"; positive.
 
     Returns
     -------
@@ -69,23 +69,52 @@ def brownian_exit(b, T, lower):
         With an absolute error of some units in the last place of 1.
     """
     T = np.asarray(T, dtype=float)
-    value = np.zeros(T.shape)
-    late = T > 0
-    if np.isinf(b) or not late.any():
-        return value
-    root = np.sqrt(2 * T[late])
+    if np.isinf(b):
+        return np.zeros(T.shape)
+    root = np.sqrt(2 * T)
     if np.isinf(lower):
-        value[late] = erfc(b / root)
-        return value
+        return erfc(b / root)
     width = b - lower
-    k = np.arange(1, 9)  # what is left out is below exp(-40), on either side of T = L^2
-    modes = -lower / width + 2 / np.pi * np.exp(
-        -np.outer(T[late], (k * np.pi / width) ** 2 / 2)
-    ) @ ((-1.0) ** k / k * np.sin(-k * np.pi * lower / width))
-    far = 2 * width * (k - 1)
-    images = erfc((far + b) / root[:, None]) - erfc((far + 2 * width - b) / root[:, None])
-    value[late] = np.where(T[late] < width**2, images.sum(axis=1), modes)
-    return value
+    late = -lower / width - _waves(b, T, width, lambda k: 2 / (np.pi * k))
+    early = sum(erfc((k + b) / root) - erfc((k + 2 * width - b) / root) for k in _turns(width))
+    return np.where(width**2 > T, early, late)
+
+
+def brownian_exit_density(b, T, lower):
+    """Density in T of `brownian_exit`, with a relative error of some units in the last place.
+
+    Parameters are those of `brownian_exit`.
+
+    Returns
+    -------
+    numpy.ndarray
+    """
+    T = np.asarray(T, dtype=float)
+    if np.isinf(b):
+        return np.zeros(T.shape)
+
+    def rate(distance):
+        return distance / np.sqrt(2 * np.pi * T**3) * np.exp(-(distance**2) / (2 * T))
+
+    if np.isinf(lower):
+        return rate(b)
+    width = b - lower
+    late = _waves(b, T, width, lambda k: np.pi * k / width**2)
+    early = sum(rate(k + b) - rate(k + 2 * width - b) for k in _turns(width))
+    return np.where(width**2 > T, early, late)
+
+
+def _turns(width):
+    """Ways to and fro; what is left out is below exp(-100) for T < width^2."""
+    return 2 * width * np.arange(8)
+
+
+def _waves(b, T, width, weight):
+    """Sum over the eigenfunctions; what is left out is below exp(-300) for T > width^2."""
+    return sum(
+        weight(k) * np.sin(k * np.pi * b / width) * np.exp(-T * (k * np.pi / width) ** 2 / 2)
+        for k in range(1, 9)
+    )
 
 
 def brownian_survival(b, T, lower=None):
