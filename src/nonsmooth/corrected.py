@@ -32,7 +32,8 @@ from nonsmooth.streams import labelled
 from nonsmooth.variance import limit_variance
 
 # a and c for every k, as measured on hundreds of one-dimensional scenes, thresholds and times
-_DOUBT = {1: (2.0, 0.0), 2: (0.8, 1.0), 3: (0.5, 2.0)}
+_DOUBT = {1: (1.0, 0.0), 2: (0.3, 2.0), 3: (0.5, 3.0)}
+_THICK = 0.6  # R over m x / b where the layer is so thick that order 1 is left
 _LONGEST = 1.5, 2.0  # R is at most the first, and the second times log(1 + 2 m / b)
 _LEADING = ("diffusion", "lower", "upper", "poisson", "skewness")
 
@@ -138,10 +139,13 @@ def _doubt(formula, errors, times, last):
     """Bound the distance of the last order to the probability."""
     c, thickness = formula.constants, formula.thickness
     frequency = formula.frequency(times)
-    first, second = _DOUBT[formula.known]
     x = formula.length**2 * frequency / c.diffusion
-    change = first * x ** ((formula.known + 1) / 2)
-    change = change / (1 + second * x ** ((formula.known - 1) / 2))
+
+    rising, falling = _DOUBT[formula.known]
+    next_order = rising * x ** ((formula.known + 1) / 2)
+    next_order /= 1 + falling * x ** ((formula.known - 1) / 2)
+    # where the layer is thick, order 1 is left
+    change = formula.share * next_order + (1 - formula.share) * _THICK * thickness * x
     # what the constants of the orders 2 and 3 may do to the clock
     corner = max(errors.lower_corner, errors.upper_corner)
     change += (errors.start + corner) / (c.diffusion * times)

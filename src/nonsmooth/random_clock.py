@@ -9,9 +9,7 @@ import numpy as np
 from scipy.special import erfcx
 
 _FARTHEST = 8.2  # standard deviations beyond which less than 1e-15 is left
-_NODES = (
-    61  # of the trapezoidal rule, exact to rounding for what is smooth and ends at 0
-)
+_NODES = 61  # of the trapezoidal rule, exact to rounding for what is smooth and ends at 0
 
 
 def averaged(function, times, spread):

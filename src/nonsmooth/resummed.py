@@ -121,6 +121,11 @@ class Formula:
         """Thickness of the layer in distances of the nearer threshold."""
         return self.length / min(-self.lower, self.upper)
 
+    @property
+    def share(self):
+        """Share of the last order in what is evaluated; the rest is order 1."""
+        return float(np.exp(-((_THIN * self.thickness) ** 4)))
+
     def orders(self, times):
         """Return the distribution functions of all known orders.
 
@@ -158,10 +163,7 @@ class Formula:
     def _mixed(self, order, times):
         """Evaluate an order, mixed with order 1 where the layer is thick."""
         first = self._order(1, times)
-        if order == 1:
-            return first
-        share = np.exp(-((_THIN * self.thickness) ** 4))
-        return first + share * (self._order(order, times) - first)
+        return first + self.share * (self._order(order, times) - first)
 
     def _order(self, order, times):
         """Evaluate an order alone."""
