@@ -8,11 +8,13 @@ cumulant of int g counts at the order 1.
 The error of an order is its distance to the last one that is known, k, and what that one changes as
 the time is multiplied or divided by exp(R),
 
-    R = a x^((k+1)/2) / (1 + c x^((k-1)/2)),  x = m^2 z / D,
+    R = a x^((k+1)/2) / (1 + c x^((k-1)/2)),  x = s^2 z / D,
 
-what the next order may do to the clock: 1/m is the wave number at which the expansion ends, and
-D z = D (1/T + |f_TT/f_T|), f_TT/f_T taken as at least its value b^2/(4 D T^2) for short times, the
-frequency that matters at T. R is at most the time that the layer at the wall can explain.
+what the next order may do to the clock: with s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 order 2
+changes it by about x, z being the frequency that matters at T, 1/T and the logarithmic derivative
+of the rate of passage. s = m of `resummed` where order 2 is not known. Of what order 1 has where
+the layer is thick, R is a multiple of m^2 z / D, and m over the threshold. It is at most the
+time that the layer can explain.
 Not in the error are large excursions of a g that grows faster than the theorems allow, of which the
 scene warns: they make early crossings likelier than any of this.
 """
@@ -32,8 +34,8 @@ from nonsmooth.streams import labelled
 from nonsmooth.variance import limit_variance
 
 # a and c for every k, as measured on hundreds of one-dimensional scenes, thresholds and times
-_DOUBT = {1: (1.0, 0.0), 2: (0.3, 2.0), 3: (0.5, 3.0)}
-_THICK = 0.6  # R over m x / b where the layer is so thick that order 1 is left
+_DOUBT = {1: (1.0, 0.0), 2: (0.3, 2.0), 3: (0.6, 2.0)}
+_THICK = 1.3  # R over m x / b where the layer is so thick that order 1 is left
 _LONGEST = 1.5, 2.0  # R is at most the first, and the second times log(1 + 2 m / b)
 _LEADING = ("diffusion", "lower", "upper", "poisson", "skewness")
 
@@ -139,13 +141,12 @@ def _doubt(formula, errors, times, last):
     """Bound the distance of the last order to the probability."""
     c, thickness = formula.constants, formula.thickness
     frequency = formula.frequency(times)
-    x = formula.length**2 * frequency / c.diffusion
-
+    x, thick = (size**2 * frequency / c.diffusion for size in (formula.second, formula.length))
     rising, falling = _DOUBT[formula.known]
     next_order = rising * x ** ((formula.known + 1) / 2)
     next_order /= 1 + falling * x ** ((formula.known - 1) / 2)
     # where the layer is thick, order 1 is left
-    change = formula.share * next_order + (1 - formula.share) * _THICK * thickness * x
+    change = formula.share * next_order + (1 - formula.share) * _THICK * thickness * thick
     # what the constants of the orders 2 and 3 may do to the clock
     corner = max(errors.lower_corner, errors.upper_corner)
     change += (errors.start + corner) / (c.diffusion * times)

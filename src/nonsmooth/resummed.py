@@ -116,6 +116,19 @@ class Formula:
             + (c.skewness / c.diffusion) ** 2
         )
 
+    @cached_property
+    def second(self):
+        """Length s of the terms of order 2; m where they are not known."""
+        if self.known == 1:
+            return self.length
+        c = self.constants
+        return np.sqrt(
+            max(abs(c.lower_corner), abs(c.upper_corner))
+            + abs(c.start - c.poisson**2 / 2)
+            + abs(c.dispersion) / c.diffusion
+            + (c.skewness / c.diffusion) ** 2
+        )
+
     @property
     def thickness(self):
         """Thickness of the layer in distances of the nearer threshold."""
