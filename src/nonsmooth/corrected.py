@@ -12,9 +12,9 @@ the time is multiplied or divided by exp(R),
 
 what the next order may do to the clock: with s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 order 2
 changes it by about x, z being the frequency that matters at T, 1/T and the logarithmic derivative
-of the rate of passage. s = m of `resummed` where order 2 is not known. Of what order 1 has where
-the layer is thick, R is a multiple of m^2 z / D, and m over the threshold. It is at most the
-time that the layer can explain.
+of the rate of passage. s = m of `resummed` where order 2 is not known. Where the layer is so thick
+that order 1 is left, R grows with m over the threshold b instead. It is at most the time that the
+layer can explain.
 Not in the error are large excursions of a g that grows faster than the theorems allow, of which the
 scene warns: they make early crossings likelier than any of this.
 """
@@ -33,9 +33,9 @@ from nonsmooth.spectral import applies
 from nonsmooth.streams import labelled
 from nonsmooth.variance import limit_variance
 
-# a and c for every k, as measured on hundreds of one-dimensional scenes, thresholds and times
+# a and c for every k, as measured on a hundred one-dimensional scenes and intervals, with a margin
 _DOUBT = {1: (1.0, 0.0), 2: (0.3, 2.0), 3: (0.6, 2.0)}
-_THICK = 1.3  # R over m x / b where the layer is so thick that order 1 is left
+_THICK = 1.3  # R over (m / b) y / (1 + y), y = m^2 z / D, where order 1 is left, as measured
 _LONGEST = 1.5, 2.0  # R is at most the first, and the second times log(1 + 2 m / b)
 _LEADING = ("diffusion", "lower", "upper", "poisson", "skewness")
 
@@ -146,7 +146,9 @@ def _doubt(formula, errors, times, last):
     next_order = rising * x ** ((formula.known + 1) / 2)
     next_order /= 1 + falling * x ** ((formula.known - 1) / 2)
     # where the layer is thick, order 1 is left
-    change = formula.share * next_order + (1 - formula.share) * _THICK * thickness * thick
+    change = formula.share * next_order + (1 - formula.share) * _THICK * thickness * thick / (
+        1 + thick
+    )
     # what the constants of the orders 2 and 3 may do to the clock
     corner = max(errors.lower_corner, errors.upper_corner)
     change += (errors.start + corner) / (c.diffusion * times)

@@ -22,7 +22,7 @@ All orders are distribution functions: what is positive in an exponent X is take
 and a lead d > 0 of the time t as the factor 1 + d / (t + d), so that no clock turns back; and
 the last order is mixed with order 1, of which
 
-    1 - exp(-(3 m / (2 b))^4),  m^2 = kappa^2 + u^2 + |B|/D + (C/D)^2
+    1 - exp(-(2 m / b)^4),  m^2 = kappa^2 + u^2 + |B|/D + (C/D)^2
 
 is taken: where the layer at the walls is as thick as the interval, expansion means nothing. Order 2
 of odd g is no farther from order 3 than half of what order 1 is: the median of three distribution
@@ -42,7 +42,7 @@ from nonsmooth.brownian import (
 )
 from nonsmooth.random_clock import averaged
 
-_THIN = 1.5  # thickness over which order 1 is left, in distances of the wall over m
+_THIN = 2.0  # thickness, in distances of the wall over m, beyond which order 1 is left
 _HALF = 0.5  # distance of order 2 from order 3, at most, in those of order 1
 _DEEPEST = 300.0  # no slopes are taken where a rate is below exp(-300) of the largest
 _STEP = 1e-4  # relative, of difference quotients; their error is of the order of its square
