@@ -20,6 +20,7 @@ scene warns: they make early crossings likelier than any of this.
 """
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -102,6 +103,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
     return value, error
 
 
+@lru_cache(maxsize=16)  # the same for every p and interval
 def _constants(scene, seed, threads):
     """Return the constants of the formula, their errors, and the highest order they suffice for."""
     if applies(scene) and scene.is_odd():
