@@ -68,13 +68,15 @@ class TestRandomClock:
     def test_mean(self, spread):
         """Against the inverse Gaussian law of the times at which it reaches a level."""
 
-        def reached(level, t):  # mean level, variance 2 b level
-            return stats.invgauss.cdf(t, 2 * spread / level, scale=level**2 / (2 * spread))
+        def slope(level, t):
+            """Of exp(-1/level), times the law of the time, of mean level and variance 2 b level."""
+            law = stats.invgauss(2 * spread / level, scale=level**2 / (2 * spread))
+            return np.exp(-1 / level) / level**2 * law.cdf(t)
 
         for t in (0.3, 2.0):
-            slope = quad(lambda s: np.exp(-1 / s) / s**2 * reached(s, t), 0, np.inf, limit=200)
+            expected = quad(slope, 0, 300, args=(t,), points=[0.1, 1, 10], limit=200)[0]
             found = averaged(lambda s: np.exp(-1 / s), np.array([t]), spread)
-            assert found[0] == pytest.approx(slope[0], abs=1e-8)
+            assert found[0] == pytest.approx(expected, abs=3e-7)
 
     def test_no_spread(self):
         """The clock is the time, and nothing has passed before 0."""
@@ -99,4 +101,4 @@ def test_without_symmetry_is_a_distribution(skewed, interval):
         formula = Formula(constants, 2, *(np.sqrt(p) * np.array(interval)))
         for value in formula.orders(p * np.geomspace(1e-3, 1e3, 300)):
             assert np.all((value >= 0) & (value <= 1))
-            assert np.all(np.diff(value) >= -1e-14)
+            assert np.all(np.diff(value) >= -1e-13)  # rounding of sums of eighty terms

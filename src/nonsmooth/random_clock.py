@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import erfcx
 
 _FARTHEST = 8.2  # standard deviations beyond which less than 1e-15 is left
-_NODES = 61  # of the trapezoidal rule, exact to rounding for what is smooth and ends at 0
+_NODES = 80  # of the trapezoidal rule, exact to rounding for what is smooth and ends at 0
 
 
 def averaged(function, times, spread):
@@ -37,11 +37,14 @@ def averaged(function, times, spread):
         return mean
     t = times[late, None]
     root = 2 * np.sqrt(spread * t)  # standard deviations times sqrt(2)
-    first = np.maximum(t - _FARTHEST / np.sqrt(2) * root, 0.0)
-    step = (t + _FARTHEST / np.sqrt(2) * root - first) / _NODES
-    clock = first + step * np.arange(1, _NODES + 1)
+    reach = _FARTHEST / np.sqrt(2) * root
+    # equal steps of the square root: what the function rises over may be short against the reach
+    first = np.sqrt(np.maximum(t - reach, 0.0))
+    step = (np.sqrt(t + reach) - first) / _NODES
+    place = first + step * np.arange(1, _NODES + 1)
+    clock = place**2
     density = np.exp(-(((clock - t) / root) ** 2)) * (
         2 / (np.sqrt(np.pi) * root) - erfcx((clock + t) / root) / (2 * spread)
     )
-    mean[late] = np.sum(step * density * function(clock), axis=1)
+    mean[late] = np.sum(2 * place * step * density * function(clock), axis=1)
     return mean
