@@ -229,9 +229,9 @@ def crossing_probability(
         that ``"monte_carlo"`` should be faster; ``"monte_carlo"`` elsewhere: for three and four
         state variables, and for two where the solver misses its tolerance.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
-        ``"corrected"`` has an error of the order 1/p, p^(-3/2) or p^(-2), see `corrected`; beyond
-        the state y with white noise it needs odd g, order 1 and, with more than two variables,
-        constants that are sampled.
+        ``"corrected"`` has an error of the order 1/p, p^(-3/2) or, for odd g, p^(-2), see
+        `corrected`; beyond the state y with white noise it needs odd g, order 1 and, with more than
+        two variables, constants that are sampled.
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (three standard errors are at most three quarters of `tol`)
