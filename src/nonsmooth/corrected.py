@@ -12,7 +12,8 @@ the time is multiplied or divided by exp(R),
 
 what the next order may do to the clock: with s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 order 2
 changes it by about x, z being the frequency that matters at T, 1/T and the logarithmic derivative
-of the rate of passage. s = m of `resummed` where order 2 is not known. Where the layer is so thick
+of the rate of passage. s = m of `resummed` where order 2 is not known. The start sees the layer's
+end, of the relative size (m/b) exp(-b/m), which is added. Where the layer is so thick
 that order 1 is left, R grows with m over the threshold b instead. It is at most the time that the
 layer can explain.
 Not in the error are large excursions of a g that grows faster than the theorems allow, of which the
@@ -147,6 +148,8 @@ def _doubt(formula, errors, times, last):
     rising, falling = _DOUBT[formula.known]
     next_order = rising * x ** ((formula.known + 1) / 2)
     next_order /= 1 + falling * x ** ((formula.known - 1) / 2)
+    # what the start still sees of the layer, which decays like exp(-1/thickness)
+    next_order += thickness * np.exp(-1 / thickness)
     # where the layer is thick, order 1 is left
     change = formula.share * next_order + (1 - formula.share) * _THICK * thickness * thick / (
         1 + thick
