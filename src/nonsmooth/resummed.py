@@ -26,8 +26,8 @@ the last order is mixed with order 1, of which
 
 is taken: where the layer at the walls is as thick as the interval, expansion means nothing. Order 2
 of odd g is no farther from order 3 than half of what order 1 is: the median of three distribution
-functions. All this is O(p^-2), for order 2 O(p^(-3/2)). For odd g neither is then worse than order 1
-but where that is right by chance; without symmetry order 2 may be, by a third, where W is small.
+functions. All this is O(p^-2), for order 2 O(p^(-3/2)). For odd g neither is then worse than order
+1 but where that is right by chance; without symmetry order 2 may be, by a third, where W is small.
 """
 
 from dataclasses import dataclass
