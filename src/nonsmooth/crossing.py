@@ -4,6 +4,8 @@ A threshold is a number b, for both sides, or a pair (lower, upper): see `thresh
 """
 
 import inspect
+import math
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -16,7 +18,7 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.first_passage import default_tolerance, spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
-from nonsmooth.streams import blocks, labelled
+from nonsmooth.streams import BLOCK, blocks, labelled
 from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
@@ -48,6 +50,10 @@ _SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
 _SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
 _PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
 _LEAST = 0.03  # standard deviation of what no path of the pilot does
+_PILOT = 16.0  # paths of the pilot times the tolerance: one that changes sides is a tenth of it
+_SKEW = 5.1  # counts by which the limits of the probability are off where nothing has crossed
+_ENLARGE = 8  # times the paths, for a probability that has not been seen
+_ATTEMPTS = 3  # at a step whose bias fits in
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -348,59 +354,144 @@ def _monte_carlo(
     precision="float32",
     most=MOST_STEPS,
 ):
-    """Count paths; the step and the number of paths follow from `tol` unless given."""
-    problem = (scene, threshold, horizons, p)
-    if step is None or paths is None:
-        step, paths = _planned(*problem, tol, step, paths, labelled(seed, "pilot"), threads, most)
-    require_count("paths", paths)
-    fewer = min(paths, max(PILOT_PATHS, paths // 8))
-    require_positive("step", step)
-    crossed = first_passage_counts(
-        *problem, step, paths, seed, threads=threads, precision=precision
-    )
-    values = crossing_estimate(np.cumsum(crossed), paths)
+    """Count paths; the step and the number of paths follow from `tol` unless given.
+
+    A pilot runs paths with a coarse step and its half. Where hardly any of them cross, or nearly
+    all, it is the answer. Otherwise there are as many paths as confidence limits show to be needed,
+    with a step whose bias, extrapolated by the weak order, fits in; it is measured anew, and
+    refined if it does not.
+    """
+    if step is not None:
+        require_positive("step", step)
+    if paths is not None:
+        require_count("paths", paths)
     times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
-    own = labelled(seed, "halving")
-    change, passage = coupled(scene, times, step, fewer, own, threads, levels)
-    bias, error = step_bias(change, schemes.scheme(scene).weak_order(scene))
-    require_resolved(step, variance_of_fine(change)[-1], bias[-1], error[-1])
-    values["step_bias"], values["step_bias_error"] = _bias_of_counts(scene, times, passage)
-    return values, {"step": step, "paths": paths}
+    order, allowed = schemes.scheme(scene).weak_order(scene), (1 - SPREAD_SHARE) * tol
 
-
-def _planned(scene, threshold, horizons, p, tol, step, paths, seed, threads, most):
-    """Step and number of paths for a tolerance, unless given, from pilots with a coarse step."""
-    times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
-    longest = coarse_step(scene) if step is None else step
-    require_positive("step", longest)
-
-    def pilot(paths):
-        return coupled(scene, times, longest, paths, seed, threads, levels)[1]
-
-    count = min(PILOT_PATHS, paths_for(0.5, tol) if paths is None else paths)
-    require_count("paths", count)
-    passage = pilot(count)
-    if paths is None:
-        crossed = np.sum(passage[0][:, None] <= times, axis=0)
-        # the probability nearest to 1/2 that the pilot does not exclude
-        _, low, high = proportion(crossed, count, _CONFIDENCE)
-        worst = np.clip(0.5, low, high)
-        paths = max(count, paths_for(np.sqrt(np.max(worst * (1 - worst))), tol))
-        require_possible(
-            paths,
-            times[-1] / longest,
-            f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}",
-            tol,
-            most,
+    def halving(step, paths, label):
+        own = labelled(seed, label)
+        return _Halving(
+            step, *coupled(scene, times, step, paths, own, threads, levels, precision=precision)
         )
-    if step is None:
-        if paths // 8 > count:
-            passage = pilot(paths // 8)
-        bias, error = _bias_of_counts(scene, times, passage)
+
+    def possible(paths, step, crossed, count):
+        told = f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}"
+        require_possible(paths, times[-1] / step, told, tol, most)
+
+    pilot, own_step, wanted = None, step, paths
+    if step is None or paths is None:
+        longest = coarse_step(scene) if step is None else step
+        count = min(PILOT_PATHS, math.ceil(_PILOT / tol) if paths is None else paths)
+        pilot = halving(longest, count, "pilot")
+        crossed = pilot.crossed(times)
+        bias, error = pilot.bias(scene, times)
         worst = np.max(np.abs(bias) + error)
-        order = schemes.scheme(scene).weak_order(scene)
-        step = refined_step(longest, worst, (1 - SPREAD_SHARE) * tol, order)
-    return step, paths
+        if step is None and paths is None:
+            half = 2**-order
+            if pilot.is_resolved(order) and _distance(crossed, count) + half * worst <= tol:
+                values = crossing_estimate(crossed, count)
+                values["step_bias"], values["step_bias_error"] = half * bias, half * error
+                return values, {"step": longest / 2, "paths": count}
+        if paths is None:
+            wanted = _paths_wanted(crossed, count, tol)
+            possible(wanted, longest, crossed, count)
+        if step is None:
+            if worst > allowed and wanted // 8 > count:
+                pilot = halving(longest, wanted // 8, "pilot")
+                worst = np.max(np.abs(np.array(pilot.bias(scene, times))).sum(axis=0))
+            own_step = refined_step(longest, worst, allowed, order)
+    for _ in range(_ATTEMPTS):
+        crossed, done = np.zeros(len(horizons), dtype=int), 0
+        while done < wanted:
+            more = wanted - done
+            crossed = crossed + np.cumsum(
+                first_passage_counts(
+                    scene,
+                    threshold,
+                    horizons,
+                    p,
+                    own_step,
+                    more,
+                    seed,
+                    done,
+                    threads,
+                    precision=precision,
+                )
+            )
+            done = wanted
+            if paths is None and _distance(crossed, done) > SPREAD_SHARE * tol:
+                wanted = max(_paths_wanted(crossed, done, tol), done + BLOCK)
+                possible(wanted, own_step, crossed, done)
+        if paths is None and pilot.step == own_step:
+            check = pilot
+        else:
+            check = halving(own_step, min(done, max(PILOT_PATHS, done // 8)), "halving")
+        check.require_resolved(order)
+        bias, error = check.bias(scene, times)
+        if step is not None or np.max(np.abs(bias) - SIGMAS * error) <= allowed:
+            values = crossing_estimate(crossed, done)
+            values["step_bias"], values["step_bias_error"] = bias, error
+            return values, {"step": own_step, "paths": done}
+        own_step = refined_step(own_step, np.max(np.abs(bias) + error), allowed, order)
+    raise ToleranceError(
+        f"W = {crossed[-1] / done:.3g} has a bias of {np.max(np.abs(bias)):.1e} by the step "
+        f"{check.step:.1e}, which does not fall by the weak order; choose a step or loosen tol"
+    )
+
+
+@dataclass(frozen=True)
+class _Halving:
+    """Paths with a step and with half of it on the same noise, see `trajectories.coupled`."""
+
+    step: float
+    change: np.ndarray
+    passage: np.ndarray
+
+    def crossed(self, times):
+        """Count the paths that have crossed with half the step."""
+        return np.sum(self.passage[0][:, None] <= times, axis=0)
+
+    def bias(self, scene, times):
+        """Bias of the fraction crossed, of the whole step, and its standard error."""
+        return _bias_of_counts(scene, times, self.passage)
+
+    def require_resolved(self, order):
+        """Refuse a step at which halving does not measure the bias."""
+        bias, error = step_bias(self.change, order)
+        require_resolved(self.step, variance_of_fine(self.change)[-1], bias[-1], error[-1])
+
+    def is_resolved(self, order):
+        """Whether halving the step measures its bias."""
+        try:
+            self.require_resolved(order)
+        except ToleranceError:
+            return False
+        return True
+
+
+def _distance(crossed, paths):
+    """Distance of the farthest confidence limit of the probabilities."""
+    value, low, high = proportion(crossed, paths, _CONFIDENCE)
+    return np.max(np.maximum(high - value, value - low))
+
+
+def _paths_wanted(crossed, paths, tol):
+    """Count paths, in whole blocks, whose limits should be as near as the tolerance asks for.
+
+    Jeffreys' limits are SIGMAS standard deviations and _SKEW |1 - 2 W| counts away. W is taken a
+    standard deviation nearer to 1/2, if that does not take more than _ENLARGE times the paths.
+    """
+    share = SPREAD_SHARE * tol
+
+    def enough(W):
+        spread, skew = SIGMAS * np.sqrt(W * (1 - W)), _SKEW * np.abs(1 - 2 * W)
+        return ((spread + np.sqrt(spread**2 + 4 * skew * share)) / (2 * share)) ** 2
+
+    W = crossed / paths
+    error = crossing_estimate(crossed, paths)["probability_error"]
+    careful = enough(np.where(W < 0.5, np.minimum(W + error, 0.5), np.maximum(W - error, 0.5)))
+    wanted = np.max(np.maximum(enough(W), np.minimum(careful, _ENLARGE * paths)))
+    return BLOCK * math.ceil(wanted / BLOCK)
 
 
 def _asymptotic(scene, threshold, horizons, p, seed, threads):

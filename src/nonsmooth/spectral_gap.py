@@ -75,7 +75,7 @@ def spectral_gap(scene, tol=1e-6):
 
 def _of_polynomials(scene, degree):
     # where the mesh need not reach out to the starting point
-    rate = float(spectral.spectrum(replace(scene, start={}), degree).rates[1])
+    rate = float(spectral.spectrum(scene.with_start({}), degree).rates[1])
     return rate, rate * _ROUNDING
 
 

@@ -2,7 +2,6 @@
 
 import math
 import time
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -187,7 +186,7 @@ def _settled_growth(scene, step, paths, seed, threads):
 
     Paths that never leave the well they start in settle too, on the wrong slope.
     """
-    elsewhere = [replace(scene, start=start) for start in wells.starts(scene)]
+    elsewhere = [scene.with_start(start) for start in wells.starts(scene)]
     times = _first_times(scene)
     for attempt in range(_DOUBLINGS):
         own = labelled(seed, attempt)
