@@ -18,6 +18,7 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.first_passage import default_tolerance, spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
+from nonsmooth.spectral import applies
 from nonsmooth.streams import BLOCK, blocks, labelled
 from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
@@ -29,7 +30,6 @@ from nonsmooth.trajectories import (
     coarse_step,
     coupled,
     parallel,
-    paths_for,
     refined_step,
     require_count,
     require_finite,
@@ -49,7 +49,7 @@ _STEP = 4e-9
 _SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
 _SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
 _PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
-_LEAST = 0.03  # standard deviation of what no path of the pilot does
+_FORMULA, _REACHED = 0.05, 0.1  # seconds, and the least error times p^2, of the corrected formula
 _PILOT = 16.0  # paths of the pilot times the tolerance: one that changes sides is a tenth of it
 _SKEW = 5.1  # counts by which the limits of the probability are off where nothing has crossed
 _ENLARGE = 8  # times the paths, for a probability that has not been seen
@@ -232,8 +232,9 @@ def crossing_probability(
         ``"spectral"`` is deterministic, for the state y with white noise and, in up to a minute or
         two, for two state variables with finite n, odd g and drift, and white or Langevin noise. It
         is taken there, unless a method or a parameter of another one is given, or `tol` is so loose
-        that ``"monte_carlo"`` should be faster; ``"monte_carlo"`` elsewhere: for three and four
-        state variables, and for two where the solver misses its tolerance.
+        that ``"monte_carlo"`` should be faster or, for one variable, the error of ``"corrected"``
+        is below it; ``"monte_carlo"`` elsewhere: for three and four state variables, and for two
+        where the solver misses its tolerance.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p, p^(-3/2) or p^(-2), see `corrected`; beyond
         the state y with white noise it needs odd g, order 1 and, with more than two variables,
@@ -293,9 +294,9 @@ def crossing_probability(
             )
             break
         except ToleranceError as error:
-            failed.setdefault(name == "monte_carlo", error)
+            failed[name] = error
     else:  # what the solver has reached is the best there is
-        raise failed[min(failed)]
+        raise failed.get("spectral", failed[name])
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
@@ -316,28 +317,34 @@ def _by(method, given):
 def _attempts(scene, horizons, p, given):
     """Choose the methods to try in turn, each with its limits.
 
-    Monte Carlo, whose pilot tells how many paths are needed, comes first if it may turn out faster
-    than the solver, and is stopped if it does not; it comes last if it may do what the solver
-    could not.
+    Monte Carlo, whose pilot tells how many paths are needed, comes before a solver if it may turn
+    out faster, and is stopped if it does not; it comes last if it may do what the solver could not.
+    So do the corrected formulas, whose errors tell whether they do.
     """
     if "order" in given:
         return [("corrected", {})]
     default = default_tolerance(scene)
     if default is None or {"step", "paths", "precision"} & given.keys():
         return [("monte_carlo", {})]
+    tol = given.get("tol", default)
     attempts = [("spectral", {})]
-    if given.get("tol", default) >= _SAMPLED:
+    if tol >= _SAMPLED:
         attempts.append(("monte_carlo", {"most": _PATIENCE}))
     if "tol" not in given:
         return attempts
     windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(_WINDOW)
-    most = windows * _SECONDS[len(scene.state)] / _STEP
     steps = p * horizons[-1] / coarse_step(scene)
-    if (
-        PILOT_PATHS * steps <= _PILOT_SHARE * most
-        and paths_for(_LEAST, given["tol"]) * steps <= most
-    ):
-        attempts.insert(0, ("monte_carlo", {"most": most}))
+
+    def sampled(seconds):
+        most = seconds / _STEP
+        pilot = 3 * min(PILOT_PATHS, _PILOT / tol) * steps
+        fast = pilot <= _PILOT_SHARE * most and _SKEW / tol * steps <= most
+        return [("monte_carlo", {"most": most})] if fast else []
+
+    attempts = sampled(windows * _SECONDS[len(scene.state)]) + attempts
+    covered = applies(scene) and scene.is_odd() and not scene.grows_too_fast
+    if covered and tol * p**2 >= _REACHED:
+        attempts = [*sampled(_FORMULA), ("corrected", {"order": 3}), *attempts]
     return attempts
 
 
