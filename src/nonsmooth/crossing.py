@@ -50,7 +50,7 @@ _SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
 _SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
 _PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
 _FORMULA, _REACHED = 0.05, 0.1  # seconds, and the least error times p^2, of the corrected formula
-_PILOT = 16.0  # paths of the pilot times the tolerance: one that changes sides is a tenth of it
+_PILOT = 12.0  # paths of the pilot times the tolerance: one that changes sides is an eighth of it
 _SKEW = 5.1  # counts by which the limits of the probability are off where nothing has crossed
 _ENLARGE = 8  # times the paths, for a probability that has not been seen
 _ATTEMPTS = 3  # at a step whose bias fits in
@@ -385,10 +385,11 @@ def _monte_carlo(
         told = f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}"
         require_possible(paths, times[-1] / step, told, tol, most)
 
-    pilot, own_step, wanted = None, step, paths
+    pilot, own_step, wanted, fewest = None, step, paths, PILOT_PATHS
     if step is None or paths is None:
         longest = coarse_step(scene) if step is None else step
         count = min(PILOT_PATHS, math.ceil(_PILOT / tol) if paths is None else paths)
+        fewest = count
         pilot = halving(longest, count, "pilot")
         crossed = pilot.crossed(times)
         bias, error = pilot.bias(scene, times)
@@ -432,7 +433,7 @@ def _monte_carlo(
         if paths is None and pilot.step == own_step:
             check = pilot
         else:
-            check = halving(own_step, min(done, max(PILOT_PATHS, done // 8)), "halving")
+            check = halving(own_step, min(done, max(fewest, done // 8)), "halving")
         check.require_resolved(order)
         bias, error = check.bias(scene, times)
         if step is not None or np.max(np.abs(bias) - SIGMAS * error) <= allowed:
