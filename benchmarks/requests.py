@@ -434,7 +434,7 @@ def moments_on(request, grid):
 
 def gap_on(request, grid):
     """Compute the gap."""
-    return spectral_gap_on(request.scene, grid)[0]
+    return spectral_gap_on(request.scene, grid, 1e-2 * request.tol)[0]
 
 
 # References
