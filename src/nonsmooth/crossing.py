@@ -49,7 +49,7 @@ _STEP = 4e-9
 _SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
 _SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
 _PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
-_FORMULA, _REACHED = 0.05, 0.1  # seconds, and the least error times p^2, of the corrected formula
+_FORMULA, _REACHED = 0.05, 0.03  # seconds, and the least error times p^2, of the corrected formula
 _PILOT = 12.0  # paths of the pilot times the tolerance: one that changes sides is an eighth of it
 _SKEW = 5.1  # counts by which the limits of the probability are off where nothing has crossed
 _ENLARGE = 8  # times the paths, for a probability that has not been seen
@@ -243,9 +243,8 @@ def crossing_probability(
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (three standard errors are at most three quarters of `tol`)
-        and on the time step (its bias is a quarter). ``"spectral"``: 1e-7 unless given, or
-        1e-4 for two variables.
-        ``"corrected"``: any error is returned unless it is given. ``"asymptotic"`` has none.
+        and on the time step (its bias is a quarter, measured again and refined if it is not).
+        ``"spectral"``: 1e-7 unless given, or 1e-4 for two variables. ``"corrected"``: any error is returned unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional

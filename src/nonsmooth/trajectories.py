@@ -321,8 +321,8 @@ def simulate(
         Final time, "1".
     tol : float
         Relative error wanted of the variance of D = int_0^horizon g: it decides, unless given,
-        on the number of paths (two standard errors are half of it) and on the longest step (its
-        bias is a quarter of it).
+        on the number of paths (three standard errors are three quarters of it) and on the
+        longest step (its bias is a quarter of it).
     step : float, optional
         Longest time step, "1".
     paths : int, optional
