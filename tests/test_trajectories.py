@@ -299,13 +299,13 @@ def test_a_spread_lost_in_the_mean_is_refused():
 
 
 def test_errors_where_no_path_has_moved():
-    """A wall that is not reached by t = 0.2: the variance is below its error, which is not 0."""
+    """A wall hardly reached by t = 0.6: the variance is below three errors, none of them 0."""
     scene = ns.Scene("obstacle", n=100, potential="x**2/2", observable="contact_force")
-    run = simulate(scene, 2.0, step=0.05, paths=2_000, times=[0.1, 0.2, 2.0])
-    finer = simulate(scene, 0.5, step=0.01, paths=200_000, times=[0.1, 0.2, 0.5])
+    run = simulate(scene, 2.0, step=0.05, paths=300, times=[0.3, 0.6, 2.0])
+    finer = simulate(scene, 2.0, step=0.05, paths=20_000, times=[0.6, 2.0])
     assert np.all(run["variance"][:2] == 0)
-    assert np.all(finer["variance"][:2] <= run["variance_error"][:2])
-    assert np.all(run["variance_error"][:2] < run["variance_error"][2])
+    assert 0 < finer["variance"][0] <= 3 * run["variance_error"][1]
+    assert np.all(run["variance_error"][:2] > 0)
     with pytest.raises(SceneError, match="longer time"):
         simulate(scene, 0.1, step=0.05, paths=100)
 

@@ -244,7 +244,8 @@ def crossing_probability(
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (three standard errors are at most three quarters of `tol`)
         and on the time step (its bias is a quarter, measured again and refined if it is not).
-        ``"spectral"``: 1e-7 unless given, or 1e-4 for two variables. ``"corrected"``: any error is returned unless it is given. ``"asymptotic"`` has none.
+        ``"spectral"``: 1e-7 unless given, or 1e-4 for two variables. ``"corrected"``: any error is
+        returned unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
