@@ -3,6 +3,7 @@
 import math
 import time
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import scipy.sparse.linalg as spla
@@ -35,8 +36,8 @@ def spectral_gap(scene, tol=1e-6):
     -------
     Estimate
         The error is the difference of two grids, what the edge of the box does, and rounding. If
-        three grids converge, it is the difference of the last two times the root of the factor by
-        which differences fall: that of the finest is the difference times this factor.
+        three grids converge, it is the difference of the last two times the root of the larger of
+        the last two factors by which differences fall: errors fall by such a factor, too.
 
     Raises
     ------
@@ -62,14 +63,14 @@ def spectral_gap(scene, tol=1e-6):
             f"n, not for ({', '.join(scene.state)}) at n = {scene.n:g}; measure the decay of "
             "correlations by Monte Carlo"
         )
-    found, change = [solve(scene, levels[0])[0]], math.inf
+    found, changes = [solve(scene, levels[0])[0]], []
     unseen = iter(levels)  # on which the effect of the box has not been measured
     for level in levels[1:]:
         value, rounding = solve(scene, level)
-        before, change = change, abs(value - found[-1])
+        changes.append(max(abs(value - found[-1]), rounding))
         found.append(value)
-        error = change * math.sqrt(min(change / before, 1.0) if before < math.inf else 1.0)
-        error += rounding
+        fall = max((b / a for a, b in pairwise(changes[-3:])), default=1.0)
+        error = changes[-1] * math.sqrt(min(fall, 1.0)) + rounding
         while error <= tol * value:
             if len(scene.state) == 1:
                 beyond = 0.0
