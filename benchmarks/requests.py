@@ -29,7 +29,7 @@ from nonsmooth.crossing import first_passage_counts
 from nonsmooth.errors import NonsmoothError, ToleranceError
 from nonsmooth.growth import growth, integrals
 from nonsmooth.spectral_gap import _on as spectral_gap_on
-from nonsmooth.trajectories import SIGMAS, coarse_step, gram, moments
+from nonsmooth.trajectories import SIGMAS, coarse_step, coupled, gram, moments
 
 SEED, OUTPUT = 1, Path("results/requests")
 COLUMNS = [
@@ -630,7 +630,8 @@ def timed(run, most=math.inf):
 def warm(request):
     """Compile what the scene's formulas need."""
     step = coarse_step(request.scene)
-    ns.simulate(request.scene, 4 * step, step=step, paths=16, times=[4 * step], threads=1)
+    gram(request.scene, [4 * step], step, 16, 0, threads=1)
+    coupled(request.scene, [4 * step], step, 16, 0, threads=1)
     first_passage_counts(request.scene, 1.0, [4 * step], 1.0, step, 16, 0, threads=1)
 
 
