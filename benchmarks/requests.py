@@ -289,6 +289,19 @@ def by(method):
     return runs
 
 
+def least_sampled(request):
+    """Return the tolerance below which a sample takes minutes, and blocks of it are not stopped."""
+    if request.quantity == "crossing":
+        return 3e-4
+    return 1e-3 * (gamma_scale(request.scene) if request.quantity == "variance" else 1.0)
+
+
+def by_sampling(request):
+    """Sample."""
+    if request.tol >= least_sampled(request):
+        yield lambda seed: request.ask(seed=seed, method=SAMPLED)
+
+
 def looser(**options):
     """Ask for less."""
 
@@ -340,7 +353,7 @@ def plain_growth(request):
         small = SIGMAS * found.rate_error <= tol * found.rate
         return found.rate if small else None, SAMPLED
 
-    if tol >= 1e-3:
+    if tol >= least_sampled(request):
         for share in STEPS:
             yield functools.partial(run, share)
 
@@ -357,7 +370,7 @@ def plain_variance(request):
         small = np.all(SIGMAS * found["variance_error"] <= tol * times)
         return found["variance"] if small else None, SAMPLED
 
-    if tol >= 1e-3 * size:
+    if tol >= least_sampled(request):
         for share in STEPS:
             yield functools.partial(run, share)
 
@@ -375,7 +388,7 @@ def plain_crossing(request):
         )
         return np.cumsum(counts) / paths, SAMPLED
 
-    if tol >= 3e-4:
+    if tol >= least_sampled(request):
         for share in STEPS:
             yield functools.partial(run, share)
 
@@ -536,7 +549,7 @@ QUANTITIES = {
         relative,
         {
             "looser": looser(),
-            "monte_carlo": by("monte_carlo"),
+            "monte_carlo": by_sampling,
             "deterministic": by("deterministic"),
         },
         {
@@ -552,7 +565,7 @@ QUANTITIES = {
         over_time,
         {
             "looser": looser(),
-            "monte_carlo": by("monte_carlo"),
+            "monte_carlo": by_sampling,
             "deterministic": by("deterministic"),
         },
         {
@@ -571,7 +584,7 @@ QUANTITIES = {
             "corrected, order 1": corrected(1),
             "corrected, order 2": corrected(2),
             "corrected, order 3": corrected(3),
-            "monte_carlo": by("monte_carlo"),
+            "monte_carlo": by_sampling,
             "spectral": by("spectral"),
             "looser spectral": looser(method="spectral"),
         },
