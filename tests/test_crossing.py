@@ -182,6 +182,29 @@ def test_tolerance_out_of_reach_is_refused_with_the_best_value():
         ns.crossing_probability(scene, 0.6, HORIZONS, tol=1e-7, method="monte_carlo")
 
 
+def test_what_hardly_happens_takes_few_paths():
+    """Where W is far below tol, some counts by 1/tol show it; a false alarm in 300 runs."""
+    exact = ns.crossing_probability(SCENE, 3.0, HORIZONS, p=10, method="spectral")["probability"]
+    assert exact[-1] < 1e-5
+    for tol, most in ((1e-3, 13_000), (1e-2, 1_200)):
+        run = ns.crossing_probability(SCENE, 3.0, HORIZONS, p=10, method="monte_carlo", tol=tol)
+        assert np.max(np.abs(run["probability"] - exact)) < tol
+        assert run.attrs["paths"] <= most
+
+
+def test_corrected_formula_is_taken_where_its_error_is_small():
+    """At large p, but not where g is above the Lyapunov function or tol below the error."""
+    problem = {"threshold": 0.6, "horizons": HORIZONS, "p": 1000.0}
+    run = ns.crossing_probability(SCENE, **problem, tol=1e-4)
+    exact = ns.crossing_probability(SCENE, **problem, method="spectral")
+    assert run.attrs["method"] == "corrected"
+    assert np.max(np.abs(run["probability"] - exact["probability"])) < 1e-4
+    assert ns.crossing_probability(SCENE, **problem, tol=2e-8).attrs["method"] == "spectral"
+    beyond = ns.Scene("friction", n=100, observable="y**3")
+    run = ns.crossing_probability(beyond, 0.6, [2.0], p=1000.0, tol=1e-4)
+    assert run.attrs["method"] != "corrected"
+
+
 def test_divergence_is_an_error():
     """A path that becomes nan must not count as one that never crosses."""
     scene = ns.Scene("friction", potential="-x**4", observable="y", start={"x": 5.0})

@@ -112,3 +112,16 @@ def test_penalty_force_is_an_observable():
     assert not ns.Scene("friction", observable="y + 1").is_odd()
     with pytest.raises(ExpressionError):
         ns.Scene("friction", observable="contact_force")
+
+
+def test_what_is_warned_of_is_said_once():
+    """Scenes derived from one that was warned of are silent, and the same in all else."""
+    with pytest.warns(AssumptionWarning, match="Lyapunov"):
+        scene = ns.Scene("friction", n=5.0, observable="y**3", start={"y": 0.5})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        stiffer, moved = scene.with_n(50), scene.with_start({"y": 1})
+    assert (stiffer.n, stiffer.identity) == (50.0, scene.identity)
+    assert (moved.n, moved.start) == (5.0, {"y": 1.0})
+    with pytest.raises(SceneError, match="n > 0"):
+        scene.with_n(-1)

@@ -5,7 +5,7 @@ import pytest
 from scipy import integrate, stats
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.march import march_pair
 from nonsmooth.panel import ETA, ZETA, new_panel
 from nonsmooth.schemes import coefficients, on_given_increments
@@ -296,6 +296,24 @@ def test_a_spread_lost_in_the_mean_is_refused():
     sums = gram(ns.Scene("friction", observable="y + 1e6"), [10.0], 0.1, BLOCK, 1)
     with pytest.raises(SceneError, match="subtract the mean"):
         moments(sums)
+
+
+def test_errors_where_no_path_has_moved():
+    """A wall hardly reached by t = 0.65: the variance is below three errors, none of them 0."""
+    scene = ns.Scene("obstacle", n=100, potential="x**2/2", observable="contact_force")
+    run = simulate(scene, 2.0, step=0.05, paths=300, times=[0.3, 0.65, 2.0])
+    finer = simulate(scene, 2.0, step=0.05, paths=20_000, times=[0.65, 2.0])
+    assert np.all(run["variance"][:2] == 0)
+    assert 0 < finer["variance"][0] <= 3 * run["variance_error"][1]
+    assert np.all(run["variance_error"][:2] > 0)
+    with pytest.raises(SceneError, match="longer time"):
+        simulate(scene, 0.1, step=0.05, paths=100)
+
+
+def test_what_would_take_for_ever_is_refused():
+    """One line with a tolerance that would not."""
+    with pytest.raises(ToleranceError, match="use tol >="):
+        simulate(ns.Scene("friction", n=100), 10.0, tol=1e-9)
 
 
 def test_bias_of_a_variance_is_not_that_of_the_mean_square():

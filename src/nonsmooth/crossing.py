@@ -4,6 +4,8 @@ A threshold is a number b, for both sides, or a pair (lower, upper): see `thresh
 """
 
 import inspect
+import math
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -16,7 +18,8 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.first_passage import default_tolerance, spectral_crossing
 from nonsmooth.march import march
 from nonsmooth.panel import TOTAL_DELTA, new_panel
-from nonsmooth.streams import blocks, labelled
+from nonsmooth.spectral import applies
+from nonsmooth.streams import BLOCK, blocks, labelled
 from nonsmooth.thresholds import bounds
 from nonsmooth.times import equal_steps
 from nonsmooth.trajectories import (
@@ -27,7 +30,6 @@ from nonsmooth.trajectories import (
     coarse_step,
     coupled,
     parallel,
-    paths_for,
     refined_step,
     require_count,
     require_finite,
@@ -47,7 +49,12 @@ _STEP = 4e-9
 _SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
 _SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
 _PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
-_LEAST = 0.03  # standard deviation of what no path of the pilot does
+_FORMULA, _REACHED = 0.05, 0.03  # seconds, and the least error times p^2, of the corrected formula
+_PILOT = 12.0  # paths of the pilot times the tolerance: one that changes sides is an eighth of it
+_SKEW = 5.1  # counts by which the limits of the probability are off where nothing has crossed
+_ENLARGE = 8  # times the paths, for a probability that has not been seen
+_CHECKED = 1 + 3 / 8  # times the work of the paths: an eighth is run with half the step, too
+_ATTEMPTS = 3  # at a step whose bias fits in
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -226,8 +233,9 @@ def crossing_probability(
         ``"spectral"`` is deterministic, for the state y with white noise and, in up to a minute or
         two, for two state variables with finite n, odd g and drift, and white or Langevin noise. It
         is taken there, unless a method or a parameter of another one is given, or `tol` is so loose
-        that ``"monte_carlo"`` should be faster; ``"monte_carlo"`` elsewhere: for three and four
-        state variables, and for two where the solver misses its tolerance.
+        that ``"monte_carlo"`` should be faster or, for one variable, the error of ``"corrected"``
+        is below it; ``"monte_carlo"`` elsewhere: for three and four state variables, and for two
+        where the solver misses its tolerance.
         ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
         ``"corrected"`` has an error of the order 1/p, p^(-3/2) or, for odd g, p^(-2), see
         `corrected`; beyond the state y with white noise it needs odd g, order 1 and, with more than
@@ -235,9 +243,9 @@ def crossing_probability(
     tol : float, optional
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (three standard errors are at most three quarters of `tol`)
-        and on the time step (its bias is a quarter). ``"spectral"``: 1e-7 unless given, or
-        1e-4 for two variables.
-        ``"corrected"``: any error is returned unless it is given. ``"asymptotic"`` has none.
+        and on the time step (its bias is a quarter, measured again and refined if it is not).
+        ``"spectral"``: 1e-7 unless given, or 1e-4 for two variables. ``"corrected"``: any error is
+        returned unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -287,9 +295,9 @@ def crossing_probability(
             )
             break
         except ToleranceError as error:
-            failed.setdefault(name == "monte_carlo", error)
+            failed[name] = error
     else:  # what the solver has reached is the best there is
-        raise failed[min(failed)]
+        raise failed.get("spectral", failed[name])
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
@@ -310,28 +318,34 @@ def _by(method, given):
 def _attempts(scene, horizons, p, given):
     """Choose the methods to try in turn, each with its limits.
 
-    Monte Carlo, whose pilot tells how many paths are needed, comes first if it may turn out faster
-    than the solver, and is stopped if it does not; it comes last if it may do what the solver
-    could not.
+    Monte Carlo, whose pilot tells how many paths are needed, comes before a solver if it may turn
+    out faster, and is stopped if it does not; it comes last if it may do what the solver could not.
+    So do the corrected formulas, whose errors tell whether they do.
     """
     if "order" in given:
         return [("corrected", {})]
     default = default_tolerance(scene)
     if default is None or {"step", "paths", "precision"} & given.keys():
         return [("monte_carlo", {})]
+    tol = given.get("tol", default)
     attempts = [("spectral", {})]
-    if given.get("tol", default) >= _SAMPLED:
+    if tol >= _SAMPLED:
         attempts.append(("monte_carlo", {"most": _PATIENCE}))
     if "tol" not in given:
         return attempts
     windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(_WINDOW)
-    most = windows * _SECONDS[len(scene.state)] / _STEP
     steps = p * horizons[-1] / coarse_step(scene)
-    if (
-        PILOT_PATHS * steps <= _PILOT_SHARE * most
-        and paths_for(_LEAST, given["tol"]) * steps <= most
-    ):
-        attempts.insert(0, ("monte_carlo", {"most": most}))
+
+    def sampled(seconds):
+        most = seconds / _STEP
+        pilot = 3 * min(PILOT_PATHS, _PILOT / tol) * steps
+        fast = pilot <= _PILOT_SHARE * most and _SKEW / tol * steps <= most
+        return [("monte_carlo", {"most": most})] if fast else []
+
+    attempts = sampled(windows * _SECONDS[len(scene.state)]) + attempts
+    covered = applies(scene) and scene.is_odd() and not scene.grows_too_fast
+    if covered and tol * p**2 >= _REACHED:
+        attempts = [*sampled(_FORMULA), ("corrected", {"order": 3}), *attempts]
     return attempts
 
 
@@ -348,59 +362,147 @@ def _monte_carlo(
     precision="float32",
     most=MOST_STEPS,
 ):
-    """Count paths; the step and the number of paths follow from `tol` unless given."""
-    problem = (scene, threshold, horizons, p)
-    if step is None or paths is None:
-        step, paths = _planned(*problem, tol, step, paths, labelled(seed, "pilot"), threads, most)
-    require_count("paths", paths)
-    fewer = min(paths, max(PILOT_PATHS, paths // 8))
-    require_positive("step", step)
-    crossed = first_passage_counts(
-        *problem, step, paths, seed, threads=threads, precision=precision
-    )
-    values = crossing_estimate(np.cumsum(crossed), paths)
+    """Count paths; the step and the number of paths follow from `tol` unless given.
+
+    A pilot runs paths with a coarse step and its half. Where hardly any of them cross, or nearly
+    all, it is the answer. Otherwise there are as many paths as confidence limits show to be needed,
+    with a step whose bias, extrapolated by the weak order, fits in; it is measured anew, and
+    refined if it does not.
+    """
+    if step is not None:
+        require_positive("step", step)
+    if paths is not None:
+        require_count("paths", paths)
     times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
-    own = labelled(seed, "halving")
-    change, passage = coupled(scene, times, step, fewer, own, threads, levels)
-    bias, error = step_bias(change, schemes.scheme(scene).weak_order(scene))
-    require_resolved(step, variance_of_fine(change)[-1], bias[-1], error[-1])
-    values["step_bias"], values["step_bias_error"] = _bias_of_counts(scene, times, passage)
-    return values, {"step": step, "paths": paths}
+    order, allowed = schemes.scheme(scene).weak_order(scene), (1 - SPREAD_SHARE) * tol
 
-
-def _planned(scene, threshold, horizons, p, tol, step, paths, seed, threads, most):
-    """Step and number of paths for a tolerance, unless given, from pilots with a coarse step."""
-    times, levels = p * horizons, np.sqrt(p) * np.array(threshold)
-    longest = coarse_step(scene) if step is None else step
-    require_positive("step", longest)
-
-    def pilot(paths):
-        return coupled(scene, times, longest, paths, seed, threads, levels)[1]
-
-    count = min(PILOT_PATHS, paths_for(0.5, tol) if paths is None else paths)
-    require_count("paths", count)
-    passage = pilot(count)
-    if paths is None:
-        crossed = np.sum(passage[0][:, None] <= times, axis=0)
-        # the probability nearest to 1/2 that the pilot does not exclude
-        _, low, high = proportion(crossed, count, _CONFIDENCE)
-        worst = np.clip(0.5, low, high)
-        paths = max(count, paths_for(np.sqrt(np.max(worst * (1 - worst))), tol))
-        require_possible(
-            paths,
-            times[-1] / longest,
-            f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}",
-            tol,
-            most,
+    def halving(step, paths, label):
+        own = labelled(seed, label)
+        return _Halving(
+            step, *coupled(scene, times, step, paths, own, threads, levels, precision=precision)
         )
-    if step is None:
-        if paths // 8 > count:
-            passage = pilot(paths // 8)
-        bias, error = _bias_of_counts(scene, times, passage)
+
+    def possible(paths, step, crossed, count):
+        told = f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}"
+        require_possible(_CHECKED * paths, times[-1] / step, told, tol, most)
+
+    pilot, own_step, wanted, fewest = None, step, paths, PILOT_PATHS
+    if step is None or paths is None:
+        longest = coarse_step(scene) if step is None else step
+        count = min(PILOT_PATHS, math.ceil(_PILOT / tol) if paths is None else paths)
+        fewest = count
+        pilot = halving(longest, count, "pilot")
+        crossed = pilot.crossed(times)
+        bias, error = pilot.bias(scene, times)
         worst = np.max(np.abs(bias) + error)
-        order = schemes.scheme(scene).weak_order(scene)
-        step = refined_step(longest, worst, (1 - SPREAD_SHARE) * tol, order)
-    return step, paths
+        if step is None and paths is None:
+            half = 2**-order
+            if pilot.is_resolved(order) and _distance(crossed, count) + half * worst <= tol:
+                values = crossing_estimate(crossed, count)
+                values["step_bias"], values["step_bias_error"] = half * bias, half * error
+                return values, {"step": longest / 2, "paths": count}
+        if paths is None:
+            wanted = _paths_wanted(crossed, count, tol)
+            possible(wanted, longest, crossed, count)
+        if step is None:
+            if worst > allowed and wanted // 8 > count:
+                pilot = halving(longest, wanted // 8, "pilot")
+                worst = np.max(np.abs(np.array(pilot.bias(scene, times))).sum(axis=0))
+            own_step = refined_step(longest, worst, allowed, order)
+            if paths is None:
+                possible(wanted, own_step, crossed, count)
+    for _ in range(_ATTEMPTS):
+        crossed, done = np.zeros(len(horizons), dtype=int), 0
+        while done < wanted:
+            more = wanted - done
+            crossed = crossed + np.cumsum(
+                first_passage_counts(
+                    scene,
+                    threshold,
+                    horizons,
+                    p,
+                    own_step,
+                    more,
+                    seed,
+                    done,
+                    threads,
+                    precision=precision,
+                )
+            )
+            done = wanted
+            if paths is None and _distance(crossed, done) > SPREAD_SHARE * tol:
+                wanted = max(_paths_wanted(crossed, done, tol), done + BLOCK)
+                possible(wanted, own_step, crossed, done)
+        if paths is None and pilot.step == own_step:
+            check = pilot
+        else:
+            check = halving(own_step, min(done, max(fewest, done // 8)), "halving")
+        check.require_resolved(order)
+        bias, error = check.bias(scene, times)
+        if step is not None or np.max(np.abs(bias) - SIGMAS * error) <= allowed:
+            values = crossing_estimate(crossed, done)
+            values["step_bias"], values["step_bias_error"] = bias, error
+            return values, {"step": own_step, "paths": done}
+        own_step = refined_step(own_step, np.max(np.abs(bias) + error), allowed, order)
+    raise ToleranceError(
+        f"W = {crossed[-1] / done:.3g} has a bias of {np.max(np.abs(bias)):.1e} by the step "
+        f"{check.step:.1e}, which does not fall by the weak order; choose a step or loosen tol"
+    )
+
+
+@dataclass(frozen=True)
+class _Halving:
+    """Paths with a step and with half of it on the same noise, see `trajectories.coupled`."""
+
+    step: float
+    change: np.ndarray
+    passage: np.ndarray
+
+    def crossed(self, times):
+        """Count the paths that have crossed with half the step."""
+        return np.sum(self.passage[0][:, None] <= times, axis=0)
+
+    def bias(self, scene, times):
+        """Bias of the fraction crossed, of the whole step, and its standard error."""
+        return _bias_of_counts(scene, times, self.passage)
+
+    def require_resolved(self, order):
+        """Refuse a step at which halving does not measure the bias."""
+        bias, error = step_bias(self.change, order)
+        require_resolved(self.step, variance_of_fine(self.change)[-1], bias[-1], error[-1])
+
+    def is_resolved(self, order):
+        """Whether halving the step measures its bias."""
+        try:
+            self.require_resolved(order)
+        except ToleranceError:
+            return False
+        return True
+
+
+def _distance(crossed, paths):
+    """Distance of the farthest confidence limit of the probabilities."""
+    value, low, high = proportion(crossed, paths, _CONFIDENCE)
+    return np.max(np.maximum(high - value, value - low))
+
+
+def _paths_wanted(crossed, paths, tol):
+    """Count paths, in whole blocks, whose limits should be as near as the tolerance asks for.
+
+    Jeffreys' limits are SIGMAS standard deviations and _SKEW |1 - 2 W| counts away. W is taken a
+    standard deviation nearer to 1/2, if that does not take more than _ENLARGE times the paths.
+    """
+    share = SPREAD_SHARE * tol
+
+    def enough(W):
+        spread, skew = SIGMAS * np.sqrt(W * (1 - W)), _SKEW * np.abs(1 - 2 * W)
+        return ((spread + np.sqrt(spread**2 + 4 * skew * share)) / (2 * share)) ** 2
+
+    W = crossed / paths
+    error = crossing_estimate(crossed, paths)["probability_error"]
+    careful = enough(np.where(W < 0.5, np.minimum(W + error, 0.5), np.maximum(W - error, 0.5)))
+    wanted = np.max(np.maximum(enough(W), np.minimum(careful, _ENLARGE * paths)))
+    return BLOCK * math.ceil(wanted / BLOCK)
 
 
 def _asymptotic(scene, threshold, horizons, p, seed, threads):

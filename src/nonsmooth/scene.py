@@ -4,7 +4,7 @@ import difflib
 import itertools
 import math
 import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 import numpy as np
@@ -57,6 +57,11 @@ class Scene:
     start: dict = field(default_factory=dict, hash=False)
 
     def __post_init__(self):
+        self._check()
+        self._warn_if_not_confined()
+        self._warn_if_g_grows()
+
+    def _check(self):
         _require_known("model", self.model, models.MODELS)
         if isinstance(self.noise, str):
             _require_known("noise", self.noise, noises.NOISES)
@@ -104,8 +109,6 @@ class Scene:
                 f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
                 f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
             )
-        self._warn_if_not_confined()
-        self._warn_if_g_grows()
 
     def _warn_if_not_confined(self):
         """Warn if U_n grows less than quadratically (hyp:HU2b); reads the formula of U.
@@ -125,13 +128,25 @@ class Scene:
             )
 
     def _warn_if_g_grows(self):
-        """Warn unless g^2 <= C V_n, which Theorem thm3 asks for; reads the formula of g.
+        """Warn unless g^2 <= C V_n, which Theorem thm3 asks for."""
+        if self.grows_too_fast:
+            warnings.warn(
+                f"g = {self.observable!r} violates g**2 <= V, V the Lyapunov function, which grows "
+                "like the energy: the paper's limit theorem does not cover this scene, and int g "
+                "may have no variance; choose a g that stays finite and grows less",
+                AssumptionWarning,
+                stacklevel=4,
+            )
+
+    @cached_property
+    def grows_too_fast(self):
+        """Whether g^2 <= C V_n is violated, as read off the formula of g.
 
         V_n grows like the energy, |z|^2 + U. Looked at are the origin, and far out the axes and
         the diagonals.
         """
         if self.observes_penalty_force:
-            return
+            return False
         used = [s for s in self.variables if s in self.observable_expression.free_symbols]
         signs = np.array(list(itertools.product([-1, 0, 1], repeat=len(used))), dtype=float)
         place = {s: signs[:, [k]] * noises.FAR for k, s in enumerate(used)}
@@ -144,14 +159,9 @@ class Scene:
             g = vectorised(self._with_numbers(self.observable_expression), tuple(used))
             ratio = np.abs(g(*place.values())) / np.sqrt(V)
         growth = np.broadcast_to(ratio, (len(signs), len(noises.FAR)))
-        if not (np.all(np.isfinite(growth)) and np.all(10 * growth[:, 0] + 1 >= growth[:, 1:].T)):
-            warnings.warn(
-                f"g = {self.observable!r} violates g**2 <= V, V the Lyapunov function, which grows "
-                "like the energy: the paper's limit theorem does not cover this scene, and int g "
-                "may have no variance; choose a g that stays finite and grows less",
-                AssumptionWarning,
-                stacklevel=4,
-            )
+        return not (
+            np.all(np.isfinite(growth)) and np.all(10 * growth[:, 0] + 1 >= growth[:, 1:].T)
+        )
 
     @property
     def identity(self):
@@ -167,7 +177,18 @@ class Scene:
 
     def with_n(self, n):
         """Return the same scene with another penalization."""
-        return replace(self, n=n)
+        return self._changed(n=n)
+
+    def with_start(self, start):
+        """Return the same scene from another starting point."""
+        return self._changed(start=start)
+
+    def _changed(self, **changes):
+        """Return a scene of which there is nothing to be warned that has not been said of this."""
+        other = object.__new__(type(self))
+        other.__dict__.update({f.name: getattr(self, f.name) for f in fields(self)} | changes)
+        other._check()
+        return other
 
     @property
     def mechanics(self):

@@ -5,7 +5,7 @@ Elements have their edges on the kinks of the drift and are graded towards them,
 convergence in the polynomial degree is exponential for every penalization.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
@@ -209,7 +209,7 @@ def spectrum(scene, degree):
 
 def mean(scene, degree=12):
     """Stationary mean of the observable."""
-    return assemble(replace(scene, start={}), degree)[3].sum()
+    return assemble(scene.with_start({}), degree)[3].sum()
 
 
 def rounding(scene, degree):

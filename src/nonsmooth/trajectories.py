@@ -214,9 +214,21 @@ def moments(gram):
     -------
     dict
         Arrays over time: `mean`, `mean_error`, `variance`, `variance_error` (standard errors).
+        Where no path has moved yet, as if one had: as far as those that have, when the first do.
+
+    Raises
+    ------
+    SceneError
+        If the spread is lost in the mean, or no path has moved by the last time.
     """
     gram = np.asarray(gram)
     paths = gram[:, 0, 0]
+    moved = gram[:, 2, 2] > 0
+    if not moved[-1]:
+        raise SceneError(
+            "int g is 0 on all paths at all times, so that nothing is known of its spread; choose "
+            "a longer time or another observable"
+        )
     average = gram[:, 0] / paths[:, None]
     covariance = gram / paths[:, None, None] - average[:, :, None] * average[:, None, :]
     result = {name: np.empty(len(gram)) for name in _MOMENTS}
@@ -236,6 +248,10 @@ def moments(gram):
             weights = weights - np.concatenate([np.zeros(3), slope])
             result[name][k] = value - slope @ a[3:]
             result[f"{name}_error"][k] = np.sqrt(max(weights @ c @ weights, 0.0) / count)
+    first = int(np.argmax(moved))
+    square = gram[first, 2, 2] / gram[first, 1, 1]  # of those that have moved
+    result["mean_error"][:first] = np.sqrt(square) / paths[:first]
+    result["variance_error"][:first] = square / paths[:first]
     return result
 
 
@@ -305,8 +321,8 @@ def simulate(
         Final time, "1".
     tol : float
         Relative error wanted of the variance of D = int_0^horizon g: it decides, unless given,
-        on the number of paths (two standard errors are half of it) and on the longest step (its
-        bias is a quarter of it).
+        on the number of paths (three standard errors are three quarters of it) and on the
+        longest step (its bias is a quarter of it).
     step : float, optional
         Longest time step, "1".
     paths : int, optional
@@ -338,7 +354,8 @@ def simulate(
     SceneError
         If a parameter is out of range, or a path diverges.
     ToleranceError
-        If the step is so long that halving it does not measure its bias.
+        If the step is so long that halving it does not measure its bias, or `tol` would take
+        more than hours; the message has one that does not.
     """
     if keep not in ("moments", "paths"):
         raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
@@ -347,11 +364,14 @@ def simulate(
     times = _output_times(horizon, times)
     require_positive("tol", tol)
     schemes.scheme(scene, scheme)  # refuses what it cannot simulate
-    paths = int(np.ceil(32 / tol**2)) if paths is None else paths
+    chosen = paths is None
+    paths = math.ceil(32 / tol**2) if chosen else paths
     require_count("paths", paths)
     if step is None:
         step = _choose_step(scene, times[-1:], tol / 4, seed, threads, scheme)
     require_positive("step", step)
+    if chosen:
+        require_possible(paths, times[-1] / step, "the variance of int g is sampled", tol)
     attributes = {"step": step, "paths": paths}
     if keep == "paths":
         kept = paths_at(scene, times, step, paths, seed, scheme, threads)
@@ -404,7 +424,7 @@ def require_possible(paths, steps, what, tol, most=MOST_STEPS):
     Raises
     ------
     ToleranceError
-        The message begins with `what`, the best value and its error.
+        The message begins with `what`, such as the best value and its error.
     """
     if paths * steps > most:
         reachable = tol * math.sqrt(paths * steps / most)
