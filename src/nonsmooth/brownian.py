@@ -61,7 +61,7 @@ def brownian_exit(b, T, lower):
     b, lower : float
         lower < 0 < b, each possibly infinite.
     T : numpy.ndarray
-        Horizons, "1"; positive.
+        Horizons, "1"; at 0 nothing has been reached.
 
     Returns
     -------
@@ -71,7 +71,7 @@ def brownian_exit(b, T, lower):
     T = np.asarray(T, dtype=float)
     if np.isinf(b):
         return np.zeros(T.shape)
-    root = np.sqrt(2 * T)
+    root = np.sqrt(2 * np.maximum(T, np.finfo(float).tiny))
     if np.isinf(lower):
         return erfc(b / root)
     width = b - lower
@@ -83,7 +83,7 @@ def brownian_exit(b, T, lower):
 def brownian_exit_density(b, T, lower):
     """Density in T of `brownian_exit`, with a relative error of some units in the last place.
 
-    Parameters are those of `brownian_exit`.
+    Parameters are those of `brownian_exit`; T is positive.
 
     Returns
     -------
