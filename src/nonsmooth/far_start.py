@@ -27,12 +27,12 @@ from nonsmooth.ordinates import ordinates
 from nonsmooth.spectral import potential
 from nonsmooth.transport import waves
 
-LEVEL = 10.0  # depth of the level
+LEVEL = 8.0  # depth of the level
 _SPREADS = 7.5  # standard deviations beyond which nothing is looked for; outside: 6e-14
 _OUT_OF_REACH = 30.0  # distances beyond which paths move with probability exp(-30) are left out
 _STAGES = 5  # of the Radau IIA method, of order 9
-_STEP, _TURN = 2.5, 12.0  # steps over relaxation and over |z|, times the degree's reciprocal
-_WIDTH = 1.0  # of elements, relative to the spread of velocities
+_STEP, _TURN = 1.0, 6.0  # steps over relaxation and over |z|, times the degree's reciprocal
+_WIDTH = 0.6  # of elements, relative to the spread of velocities
 _NORMAL = 48  # Gauss points in each direction of the normal law
 
 
@@ -60,6 +60,7 @@ class Approach:
     speed: object
     sigma: float
     kinks: np.ndarray
+    floor: float
     linear: tuple | None
 
 
@@ -86,6 +87,7 @@ def approach(scene):
     if np.any(sign * towards < 0):
         return None
     kinks = np.sort(places[places > level])
+    floor = max(places[places <= level], default=0.0)
 
     def drift(v):
         return side * slope(side * np.asarray(v, dtype=float))
@@ -95,15 +97,15 @@ def approach(scene):
 
     linear = None
     if not len(kinks):
-        ends = np.array([level, 2 * abs(start)])
+        ends = np.array([floor + 1e-3 * (level - floor), 2 * abs(start)])
         lines = [np.diff(f(ends)) / np.diff(ends) for f in (drift, speed)]
-        laws = [(float(f(ends[:1])[0] - k[0] * level), float(k[0])) for f, k in zip((drift, speed), lines)]
+        laws = [(float(f(ends[:1])[0] - k[0] * ends[0]), float(k[0])) for f, k in zip((drift, speed), lines)]
         if all(
             np.allclose(f(probe), a + b * probe, rtol=1e-12, atol=0)
             for f, (a, b) in zip((drift, speed), laws, strict=True)
         ):
             linear = laws
-    return Approach(side, level, abs(start), towards, drift, speed, scene.noise.sigma, kinks, linear)
+    return Approach(side, level, abs(start), towards, drift, speed, scene.noise.sigma, kinks, floor, linear)
 
 
 @dataclass(frozen=True)
@@ -170,17 +172,17 @@ def law(tail, time):
     )
 
 
-def free_time(tail):
-    """Longest time within which the level is not reached; 0 where the law is not normal."""
+def free_time(tail, velocity):
+    """Longest time within which y does not fall to a velocity; 0 where the law is not normal."""
     if tail.linear is None:
         return 0.0
 
     def margin(time):
         now = law(tail, time)
-        return (now.mean[0] - tail.level) / np.sqrt(now.covariance[0, 0]) - _SPREADS
+        return (now.mean[0] - velocity) / np.sqrt(now.covariance[0, 0]) - _SPREADS
 
     (push, rate), _ = tail.linear
-    last = np.log1p((tail.start - tail.level) * rate / (push + rate * tail.level)) / rate
+    last = np.log1p((tail.start - velocity) * rate / (push + rate * velocity)) / rate
     times = last * np.linspace(0, 1, 400)[1:]
     below = np.flatnonzero([margin(t) < 0 for t in times])
     return float(times[below[0] - 1]) if below[0] > 0 else 0.0
@@ -254,7 +256,8 @@ class March:
     degree : int
     """
 
-    def __init__(self, tail, law, distance, degree):
+    def __init__(self, tail, law, distance, other, degree):
+        self.other = other
         self.tail, self.law, self.degree = tail, law, degree
         spread = np.sqrt(law.covariance[0, 0])
         self.axis, generator, self.speed = _tail(tail, law.mean[0] + _SPREADS * spread, degree)
@@ -298,8 +301,13 @@ class March:
             self.weights[count] = result
         return self.weights[count]
 
-    def mean(self, z, boundary):
+    def mean(self, z, above, below):
         """E exp(-z tau), given s -> h at the level."""
+        own, opposite = (above, below) if self.tail.towards > 0 else (below, above)
+
+        def boundary(s):
+            return own.at(s + self.gap) + opposite.at(self.other + self.length - s)
+
         count = self.steps(z)
         step = self.length / count
         weights = self.mean_weights(count)

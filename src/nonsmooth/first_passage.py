@@ -6,7 +6,7 @@ window. Where the probability, or the survival probability, is small, its contou
 saddle point or at the leading pole instead of 0: the error is then relative.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -15,11 +15,12 @@ from scipy.optimize import root_scalar
 from nonsmooth import first_passage_plane, models
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.expressions import vectorised
+from nonsmooth.far_start import Approach, Law, March, approach, free_time, law
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
 from nonsmooth.scene import Scene
 from nonsmooth.spectral import applies, potential
-from nonsmooth.transport import first_passage
+from nonsmooth.transport import first_passage, waves
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
 # rises; more nodes, of larger real part, would only make the rounding errors grow
@@ -90,12 +91,9 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"({', '.join(scene.state)}) with {scene.noise.title} and n = {scene.n:g}; "
             "use method='monte_carlo'"
         )
-    if applies(scene) and _start_depth(scene) > _FARTHEST:
-        raise SceneError(
-            f"the start y = {scene.start['y']:g} is too far in the tails, where the modes of the "
-            "transport equation have no digits; start nearer or use method='monte_carlo'"
-        )
     try:
+        if applies(scene) and _start_depth(scene) > _TAIL:
+            return _from_afar(scene, lower, upper, times, _Line.tol if tol is None else tol)
         return _refined(problem, times, problem.tol if tol is None else tol)
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
         raise ToleranceError(
@@ -169,6 +167,56 @@ class _Line:
         That of Brownian motion without drift, which points to the origin.
         """
         return self.scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
+
+
+@dataclass(frozen=True)
+class _Late(_Line):
+    """What is left of a far start after its free flight.
+
+    Attributes
+    ----------
+    tail : far_start.Approach
+    law : far_start.Law
+        Of the velocity and the way at the end of the flight.
+    """
+
+    tail: Approach
+    law: Law
+    relative = False
+    cure = "loosen tol, or use method='monte_carlo'"
+
+    def _on(self, degree, time, reach, depth):
+        start = {"y": self.tail.side * self.tail.level}
+        grid = ordinates(
+            replace(self.scene, start=start),
+            degree, time, reach, depth, distances=(-self.lower, self.upper),
+        )
+        distances = self.upper, -self.lower
+        march = March(self.tail, self.law, *distances[:: self.tail.towards], degree)
+        return lambda z: march.mean(z, *waves(grid, z, self.lower, self.upper))
+
+
+def _from_afar(scene, lower, upper, times, tol):
+    """While the flight is free"""
+    tail = approach(scene)
+    distance, other = (upper, -lower) if tail.towards > 0 else (-lower, upper)
+    flight, begin = (free_time(tail, v) for v in (tail.floor, tail.level))
+    passed = np.array([law(tail, t).passed(distance) for t in np.minimum(times, flight)])
+    start = law(tail, begin)
+    left = 1 - start.passed(distance)
+    error = np.full(len(times), 1e-12)
+    late = times > flight
+    if late.any() and 1 - law(tail, flight).passed(distance) > 1e-12:
+        problem = _Late(scene, lower, upper, tail, start)
+        found = _refined(problem, times[late] - begin, tol / left)
+        passed[late] = 1 - left * (1 - found["probability"])
+        error[late] += left * found["probability_error"]
+    return {
+        "probability": passed,
+        "probability_error": error,
+        "survival": 1 - passed,
+        "survival_error": error,
+    }
 
 
 def _refined(problem, times, tol):

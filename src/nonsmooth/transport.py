@@ -147,6 +147,8 @@ class Waves:
 
     def at(self, distance):
         """Sum at distances from the wall, of shape (..., ); 0 where that is infinite."""
+        if not len(self.rates):
+            return np.zeros(np.shape(distance))
         return np.exp(-np.multiply.outer(distance, self.rates)) @ self.strengths
 
 
