@@ -16,7 +16,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 import sympy
 from numpy.polynomial import legendre
-from scipy.linalg.lapack import zgbtrf, zgbtrs
+from scipy.linalg import solve_banded
+from scipy.linalg.lapack import zgbsv
 from scipy.optimize import brentq
 from scipy.special import ndtr
 
@@ -31,8 +32,10 @@ LEVEL = 8.0  # depth of the level
 _SPREADS = 7.5  # standard deviations beyond which nothing is looked for; outside: 6e-14
 _OUT_OF_REACH = 30.0  # distances beyond which paths move with probability exp(-30) are left out
 _STAGES = 5  # of the Radau IIA method, of order 9
-_STEP, _TURN = 1.0, 6.0  # steps over relaxation and over |z|, times the degree's reciprocal
-_WIDTH = 0.6  # of elements, relative to the spread of velocities
+_TURN, _ROTATION = 5.0, 12.0  # of exp(-z int dt) in a step, times the degree, and in an element
+_WIDTH = 0.9  # of elements, relative to the spread of velocities on the way to the level
+_COARSE = 7
+_BEYOND = 4.0
 _NORMAL = 48  # Gauss points in each direction of the normal law
 
 
@@ -62,6 +65,20 @@ class Approach:
     kinks: np.ndarray
     floor: float
     linear: tuple | None
+
+    @property
+    def rate(self):
+        v = np.array([self.start, 2 * self.start])
+        return float(np.diff(self.drift(v))[0] / self.start)
+
+    @property
+    def relaxation(self):
+        """Rate"""
+        return 3 * max(self.sigma**2 / self.level**2, float(self.drift(self.level)) / self.level)
+
+    @cached_property
+    def reach(self):
+        return reach(self)
 
 
 def approach(scene):
@@ -193,42 +210,51 @@ def reach(tail):
 
     Chernoff's bound with u(y) = E exp(theta int |g|), which solves A u + theta |g| u = 0.
     """
-    axis, generator, speed = _tail(tail, tail.start, 7)
+    axis = _axis(tail, tail.start, _COARSE)
+    generator, speed = _generator(tail, axis), tail.speed(axis.nodes)
     row = axis.interpolation(tail.start).toarray()[0]
     best = np.inf
     scale = np.max(speed) * (tail.start - tail.level) / np.min(tail.drift(axis.nodes))
     if scale == 0:
         return 0.0
     for theta in np.geomspace(1e-3, 1e3, 49) / scale:
-        matrix = -generator - theta * np.diag(speed)
-        u = np.ones(len(speed))
-        u[1:] = np.linalg.solve(matrix[1:, 1:], -matrix[1:, 0])
+        matrix = _band(generator[1:, 1:], _COARSE) * -1
+        matrix[_COARSE] -= theta * speed[1:]
+        u = np.append(1.0, solve_banded((_COARSE, _COARSE), matrix, generator[1:, 0]))
         if not np.all(u > 0):
             break
         best = min(best, (np.log(row @ u) + _OUT_OF_REACH) / theta)
     return best
 
 
-def _tail(tail, top, degree, edges_per_width=1.0):
-    """Axis from the level to beyond `top`, the generator on it, and |g|."""
-    spread = tail.sigma / np.sqrt(2 * _rate(tail))
-    end = top + 4 * min(spread, tail.sigma * np.sqrt(top / float(tail.drift(top))))
-    edges = [tail.level]
+def _axis(tail, top, degree, turn=0.0):
+    """Elements from the level to beyond `top`, graded to where u is exp(-i turn int dt)."""
+
+    def spread(v):
+        return tail.sigma * np.sqrt(v / float(tail.drift(v)))
+
+    edges, end = [tail.level], top + _BEYOND * min(spread(top), tail.sigma / np.sqrt(tail.rate))
     while edges[-1] < end:
         v = edges[-1]
-        width = min(v, tail.sigma * np.sqrt(v / float(tail.drift(v)))) * _WIDTH
+        width = min(v, _WIDTH * spread(v), _ROTATION * float(tail.drift(v)) / max(turn, 1e-300))
         edges.append(v + width)
     edges = np.array(edges)
-    edges = np.unique(np.append(edges, tail.kinks[tail.kinks < edges[-1]]))
-    axis = continuous(edges, degree)
+    kinks = tail.kinks[tail.kinks < edges[-1]]
+    return continuous(np.unique(np.append(edges, kinks)), degree)
+
+
+def _generator(tail, axis):
     generator = tail.sigma**2 / 2 * axis.curvature.toarray()
-    generator -= tail.drift(axis.nodes)[:, None] * axis.slope.toarray()
-    return axis, generator, tail.speed(axis.nodes)
+    return generator - tail.drift(axis.nodes)[:, None] * axis.slope.toarray()
 
 
-def _rate(tail):
-    v = np.array([tail.start, 2 * tail.start])
-    return float(np.diff(tail.drift(v))[0] / tail.start)
+def _band(matrix, width):
+    """Diagonals of a matrix as `solve_banded` wants them."""
+    size = len(matrix)
+    band = np.zeros((2 * width + 1, size))
+    for k in range(-width, width + 1):
+        band[width - k, max(k, 0) : size + min(k, 0)] = np.diag(matrix, k)
+    return band
 
 
 @lru_cache(maxsize=4)
@@ -251,93 +277,96 @@ class March:
     tail : Approach
     law : Law
         Of the start of the march.
-    distance : float
-        To the wall; possibly infinite.
+    lower, upper : float
     degree : int
     """
 
-    def __init__(self, tail, law, distance, other, degree):
-        self.other = other
-        self.tail, self.law, self.degree = tail, law, degree
-        spread = np.sqrt(law.covariance[0, 0])
-        self.axis, generator, self.speed = _tail(tail, law.mean[0] + _SPREADS * spread, degree)
-        self.length = min(distance, reach(tail) + 0.0)
-        self.gap = 0.0 if self.length == distance else distance - self.length
-        self.points = law.points(self.length)
-        self.mass = self.points[2].sum()
-        inner = generator[1:, 1:]
-        self.entering = generator[1:, 0]
-        size = len(inner)
-        self.band = np.zeros((2 * degree + 1, size), complex)
-        for k in range(-degree, degree + 1):
-            self.band[degree - k, max(k, 0) : size + min(k, 0)] = np.diag(inner, k)
-        nodes, matrix = radau(_STAGES)
-        values, vectors = np.linalg.eig(np.linalg.inv(matrix))
-        self.nodes, self.shifts, self.vectors = nodes, values, vectors
-        self.weights = {}
-
-    def steps(self, z):
-        tail = self.tail
-        gain = self.speed[0] if self.speed[0] > 0 else np.max(self.speed)
-        level = tail.level
-        relaxation = min(level**2 / tail.sigma**2, level / float(tail.drift(level)))
-        step = gain * min(_STEP * relaxation, _TURN / abs(z)) / self.degree
-        return int(np.ceil(self.length / step))
-
-    def mean_weights(self, count):
-        """Weights of the values in each step, at its start and its stages, and at the nodes."""
-        if count not in self.weights:
-            v, moved, mass = self.points
-            s = np.clip(self.length - moved, 0.0, self.length)
-            step = self.length / count
-            where = np.minimum((s / step).astype(int), count - 1)
-            local = 2 * (s / step - where) - 1
-            rows = lagrange(2 * np.append(0.0, self.nodes) - 1, local)[0] * mass[:, None]
-            across = self.axis.interpolation(v)
-            result = np.zeros((count, _STAGES + 1, len(self.axis.nodes)))
-            for k in np.unique(where):
-                here = where == k
-                result[k] = (across[np.flatnonzero(here)].T @ rows[here]).T
-            self.weights[count] = result
-        return self.weights[count]
+    def __init__(self, tail, law, lower, upper, degree):
+        self._tail, self._law, self._degree = tail, law, degree
+        distance, self._other = (upper, -lower) if tail.towards > 0 else (-lower, upper)
+        self._length = min(distance, tail.reach)
+        self._gap = distance - self._length if np.isfinite(distance) else np.inf
+        self._points = law.points(self._length)
+        self._grids = {}
 
     def mean(self, z, above, below):
-        """E exp(-z tau), given s -> h at the level."""
-        own, opposite = (above, below) if self.tail.towards > 0 else (below, above)
+        """E exp(-z tau), given the waves of the walls at the level."""
+        octave = max(0, int(np.ceil(np.log2(abs(z) / self._tail.relaxation))))
+        if octave not in self._grids:
+            self._grids[octave] = _Grid(
+                self._tail,
+                self._law.mean[0] + _SPREADS * np.sqrt(self._law.covariance[0, 0]),
+                self._length,
+                self._points,
+                self._degree,
+                self._tail.relaxation * 2**octave,
+            )
+        grid = self._grids[octave]
+        own, opposite = (above, below) if self._tail.towards > 0 else (below, above)
+        ends = grid.step * np.arange(grid.count + 1)
+        later = radau(_STAGES)[0] * grid.step
+        boundary = np.zeros((grid.count, _STAGES), complex)
+        first = 0.0
+        if np.isfinite(self._gap):
+            boundary += own.product(self._gap + ends[:-1], later)
+            first += own.at(self._gap)
+        if np.isfinite(self._other):
+            boundary += opposite.product(self._other + ends[-2::-1], grid.step - later)
+            first += opposite.at(self._other + self._length)
+        return grid.mean(z, first, boundary, 1.0 if self._gap == 0 else first)
 
-        def boundary(s):
-            return own.at(s + self.gap) + opposite.at(self.other + self.length - s)
 
-        count = self.steps(z)
-        step = self.length / count
-        weights = self.mean_weights(count)
-        degree, size = self.degree, len(self.speed) - 1
-        speed = self.speed[1:] / step
-        factors = []
-        for shift in self.shifts:
-            ab = np.zeros((3 * degree + 1, size), complex)
-            ab[degree:] = -self.band
-            ab[2 * degree] += shift * speed + z
-            lu, pivots, info = zgbtrf(ab, degree, degree)
-            factors.append((lu, pivots))
-        inverse = np.linalg.inv(self.vectors)
-        ones = inverse.sum(axis=1)
-        times = (np.arange(count)[:, None] + self.nodes) * step
-        values = boundary(times.ravel()).reshape(count, _STAGES)
-        start = boundary(np.zeros(1))[0]
-        u = np.full(size, 1.0 if self.gap == 0 else start, complex)
-        edge = start
+class _Grid:
+    """Discretisation of the tail for |z| up to some size."""
+
+    def __init__(self, tail, top, length, points, degree, size):
+        velocities, ways, masses = points
+        self._degree, self._axis = degree, _axis(tail, top, degree, size)
+        nodes = self._axis.nodes
+        speed = tail.speed(nodes)
+        gain = speed[0] if speed[0] > 0 else np.max(speed)
+        self.count = max(1, int(np.ceil(length * degree * size / (_TURN * max(gain, 1e-300)))))
+        self.step = length / self.count
+        self._pace = speed[1:] / max(self.step, 1e-300)
+        generator = _generator(tail, self._axis)
+        self._band, self._entering = _band(generator[1:, 1:], degree), generator[1:, 0]
+        place, matrix = radau(_STAGES)
+        self._shifts, self._vectors = np.linalg.eig(np.linalg.inv(matrix))
+        s = np.clip(length - ways, 0.0, length) / max(self.step, 1e-300)
+        where = np.minimum(s.astype(int), self.count - 1)
+        local = lagrange(2 * np.append(0.0, place) - 1, 2 * (s - where) - 1)[0]
+        across = self._axis.interpolation(velocities)
+        self._first = int(where.min())
+        self._weights = np.zeros((self.count - self._first, len(nodes), _STAGES + 1))
+        for k in np.unique(where):
+            here = np.flatnonzero(where == k)
+            self._weights[k - self._first] = across[here].T @ (
+                local[here] * (masses[here] / masses.sum())[:, None]
+            )
+
+    def mean(self, z, first, boundary, begin):
+        degree, size = self._degree, len(self._pace)
+        inverse = np.linalg.inv(self._vectors)
+        carry = np.empty((_STAGES, size, size), complex)
+        enter = np.empty((_STAGES, size), complex)
+        for i, shift in enumerate(self._shifts):
+            band = np.zeros((3 * degree + 1, size), complex)
+            band[degree:] = -self._band
+            band[2 * degree] += shift * self._pace + z
+            right = np.column_stack([np.diag(shift * inverse[i].sum() * self._pace), self._entering])
+            _, _, solution, failed = zgbsv(degree, degree, band, right.astype(complex))
+            carry[i], enter[i] = solution[:, :-1], solution[:, -1]
+        carry = np.tensordot(self._vectors, carry, 1)
+        enter = np.einsum("ki,in,ij->knj", self._vectors, enter, inverse)
+        carry = carry.reshape(_STAGES * size, size)
+        enter = boundary @ enter.reshape(_STAGES * size, _STAGES).T
+        values = np.empty((_STAGES + 1, size + 1), complex)
+        values[0, 0], values[0, 1:] = first, begin
         total = 0.0
-        for k in range(count):
-            right = inverse @ values[k]
-            stages = np.empty((_STAGES, size), complex)
-            for i, shift in enumerate(self.shifts):
-                b = shift * ones[i] * speed * u + self.entering * right[i]
-                stages[i] = zgbtrs(factors[i][0], degree, degree, b, factors[i][1])[0]
-            stages = self.vectors @ stages
-            here = weights[k]
-            if here.any():
-                total += here[0, 0] * edge + here[0, 1:] @ u
-                total += here[1:, 0] @ values[k] + np.sum(here[1:, 1:] * stages)
-            u, edge = stages[-1], values[k, -1]
-        return total / self.mass
+        for k in range(self.count):
+            values[1:, 0] = boundary[k]
+            values[1:, 1:] = (carry @ values[0, 1:] + enter[k]).reshape(_STAGES, size)
+            if k >= self._first:
+                total += np.sum(self._weights[k - self._first].T * values)
+            values[0] = values[-1]
+        return total

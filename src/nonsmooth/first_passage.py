@@ -191,8 +191,7 @@ class _Late(_Line):
             replace(self.scene, start=start),
             degree, time, reach, depth, distances=(-self.lower, self.upper),
         )
-        distances = self.upper, -self.lower
-        march = March(self.tail, self.law, *distances[:: self.tail.towards], degree)
+        march = March(self.tail, self.law, self.lower, self.upper, degree)
         return lambda z: march.mean(z, *waves(grid, z, self.lower, self.upper))
 
 

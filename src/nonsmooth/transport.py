@@ -146,10 +146,13 @@ class Waves:
     rates: np.ndarray
 
     def at(self, distance):
-        """Sum at distances from the wall, of shape (..., ); 0 where that is infinite."""
-        if not len(self.rates):
-            return np.zeros(np.shape(distance))
-        return np.exp(-np.multiply.outer(distance, self.rates)) @ self.strengths
+        """Sum at a distance from the wall."""
+        return np.exp(-self.rates * distance) @ self.strengths
+
+    def product(self, distances, further):
+        """Sum at all distances[i] + further[k]."""
+        parts = (np.exp(-np.outer(part, self.rates)) for part in (distances, further))
+        return next(parts) * self.strengths @ next(parts).T
 
 
 def first_passage(grid, z, lower, upper):
@@ -167,7 +170,7 @@ def first_passage(grid, z, lower, upper):
     complex
     """
     above, below = waves(grid, z, lower, upper)
-    return above.at(upper) + below.at(-lower)
+    return sum(w.at(d) for w, d in ((above, upper), (below, -lower)) if np.isfinite(d))
 
 
 def waves(grid, z, lower, upper):
