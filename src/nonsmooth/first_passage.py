@@ -48,6 +48,7 @@ _SAFETY = {True: 1.0, False: 3.0}  # without symmetry levels do not converge reg
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
 _UNDERFLOW = 1e-300
+_FLIGHT = 1e-9  # probability of what is left out in the flight
 _AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
 _DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
@@ -183,13 +184,17 @@ class _Late(_Line):
     tail: Approach
     law: Law
     relative = False
+    last = 1e-9
     cure = "loosen tol, or use method='monte_carlo'"
 
     def _on(self, degree, time, reach, depth):
-        start = {"y": self.tail.side * self.tail.level}
         grid = ordinates(
-            replace(self.scene, start=start),
-            degree, time, reach, depth, distances=(-self.lower, self.upper),
+            replace(self.scene, start={"y": self.tail.side * self.tail.level}),
+            degree,
+            time,
+            reach,
+            depth,
+            distances=(-self.lower, self.upper),
         )
         march = March(self.tail, self.law, self.lower, self.upper, degree)
         return lambda z: march.mean(z, *waves(grid, z, self.lower, self.upper))
@@ -203,13 +208,13 @@ def _from_afar(scene, lower, upper, times, tol):
     passed = np.array([law(tail, t).passed(distance) for t in np.minimum(times, flight)])
     start = law(tail, begin)
     left = 1 - start.passed(distance)
-    error = np.full(len(times), 1e-12)
+    error = np.full(len(times), _FLIGHT)
     late = times > flight
-    if late.any() and 1 - law(tail, flight).passed(distance) > 1e-12:
+    if late.any() and 1 - law(tail, flight).passed(distance) > _FLIGHT:
         problem = _Late(scene, lower, upper, tail, start)
-        found = _refined(problem, times[late] - begin, tol / left)
+        found = _refined(problem, times[late] - begin, tol / (2 * left))
         passed[late] = 1 - left * (1 - found["probability"])
-        error[late] += left * found["probability_error"]
+        error[late] += 2 * left * found["probability_error"]
     return {
         "probability": passed,
         "probability_error": error,
