@@ -48,6 +48,7 @@ _SAFETY = {True: 1.0, False: 3.0}  # without symmetry levels do not converge reg
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
 _UNDERFLOW = 1e-300
+_DENSER = 0.65  # nodes of a contour, where the probability rises late and fast
 _FLIGHT = 1e-9  # probability of what is left out in the flight
 _AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
@@ -184,6 +185,7 @@ class _Late(_Line):
     tail: Approach
     law: Law
     relative = False
+    levels = tuple((degree, count, _DENSER * spacing) for degree, count, spacing in _LEVELS)
     last = 1e-9
     cure = "loosen tol, or use method='monte_carlo'"
 
