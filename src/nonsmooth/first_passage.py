@@ -12,10 +12,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
-from nonsmooth import first_passage_plane, models
+from nonsmooth import far_start, first_passage_plane, models
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.expressions import vectorised
-from nonsmooth.far_start import Approach, Law, March, approach, free_time, law
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
 from nonsmooth.scene import Scene
@@ -46,10 +45,10 @@ _MOST = 80  # terms of a contour through a saddle
 _ROUNDING = {True: 1e-14, False: 1e-13}
 _SAFETY = {True: 1.0, False: 3.0}  # without symmetry levels do not converge regularly
 _SMALL = 1e-3  # survival probabilities below get contours of their own
-_TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
+_TAIL = 16.0  # depth of a start beyond which the modes lose digits
 _UNDERFLOW = 1e-300
-_DENSER = 0.65  # nodes of a contour, where the probability rises late and fast
-_FLIGHT = 1e-9  # probability of what is left out in the flight
+_DENSER = 0.65  # spacing of nodes where, from a far start, the probability rises fast up to 1
+_NEGLECTED = 1e-9  # bound of what is left out of the law of a far start
 _AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
 _DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
@@ -127,6 +126,7 @@ class _Line:
     tol = 1e-7
     relative = True
     levels, loose = _LEVELS, _LOOSE
+    cure = "loosen tol"
     # what is taken as 0: probabilities, and values of the transform
     negligible, rounded = 1e-14, 1e-70
     inexact = 1e-13  # what no refinement shows, relative
@@ -137,16 +137,6 @@ class _Line:
     def two_sided(self):
         """Whether both levels are finite."""
         return np.isfinite(self.lower) and np.isfinite(self.upper)
-
-    @property
-    def cure(self):
-        """What to do where the tolerance is not met."""
-        if _start_depth(self.scene) <= _TAIL:
-            return "loosen tol"
-        return (
-            f"loosen tol, start nearer to the bulk than y = {self.scene.start['y']:g}, or use "
-            "method='monte_carlo'"
-        )
 
     def near_axis(self, radius, depth):
         """Return z -> E exp(-z tau) for |z| = radius; on the axis, of the order exp(-depth)."""
@@ -173,49 +163,46 @@ class _Line:
 
 @dataclass(frozen=True)
 class _Late(_Line):
-    """What is left of a far start after its free flight.
+    """What is left of a far start after its descent to the bulk.
 
     Attributes
     ----------
-    tail : far_start.Approach
-    law : far_start.Law
-        Of the velocity and the way at the end of the flight.
+    tail : far_start.Tail
     """
 
-    tail: Approach
-    law: Law
+    tail: far_start.Tail
     relative = False
     levels = tuple((degree, count, _DENSER * spacing) for degree, count, spacing in _LEVELS)
     last = 1e-9
     cure = "loosen tol, or use method='monte_carlo'"
 
     def _on(self, degree, time, reach, depth):
+        tail = self.tail
         grid = ordinates(
-            replace(self.scene, start={"y": self.tail.side * self.tail.level}),
+            replace(self.scene, start={"y": tail.side * tail.level}),
             degree,
             time,
             reach,
             depth,
             distances=(-self.lower, self.upper),
         )
-        march = March(self.tail, self.law, self.lower, self.upper, degree)
+        march = far_start.March(tail, tail.law(tail.descent), self.lower, self.upper, degree)
         return lambda z: march.mean(z, *waves(grid, z, self.lower, self.upper))
 
 
 def _from_afar(scene, lower, upper, times, tol):
-    """While the flight is free"""
-    tail = approach(scene)
-    distance, other = (upper, -lower) if tail.towards > 0 else (-lower, upper)
-    flight, begin = (free_time(tail, v) for v in (tail.floor, tail.level))
-    passed = np.array([law(tail, t).passed(distance) for t in np.minimum(times, flight)])
-    start = law(tail, begin)
-    left = 1 - start.passed(distance)
-    error = np.full(len(times), _FLIGHT)
-    late = times > flight
-    if late.any() and 1 - law(tail, flight).passed(distance) > _FLIGHT:
-        problem = _Late(scene, lower, upper, tail, start)
-        found = _refined(problem, times[late] - begin, tol / (2 * left))
-        passed[late] = 1 - left * (1 - found["probability"])
+    """`spectral_crossing` from a start in the tail: normal at first, then by `_Late`."""
+    tail = far_start.tail(scene)
+    distance = upper if tail.towards > 0 else -lower
+    passed = np.array([tail.law(t).passed(distance) for t in np.minimum(times, tail.flight)])
+    error = np.full(len(times), _NEGLECTED)
+    late = times > tail.flight
+    if late.any() and 1 - tail.law(tail.flight).passed(distance) > _NEGLECTED:
+        left = 1 - tail.law(tail.descent).passed(distance)
+        problem = _Late(scene, lower, upper, tail)
+        # a level may no more than halve the error
+        found = _refined(problem, times[late] - tail.descent, tol / (2 * left))
+        passed[late] = 1 - left * found["survival"]
         error[late] += 2 * left * found["probability_error"]
     return {
         "probability": passed,

@@ -149,10 +149,10 @@ class Waves:
         """Sum at a distance from the wall."""
         return np.exp(-self.rates * distance) @ self.strengths
 
-    def product(self, distances, further):
-        """Sum at all distances[i] + further[k]."""
-        parts = (np.exp(-np.outer(part, self.rates)) for part in (distances, further))
-        return next(parts) * self.strengths @ next(parts).T
+    def grid(self, distances, further):
+        """Sum at all distances[i] + further[k], neither negative."""
+        far, near = (np.exp(-np.outer(part, self.rates)) for part in (distances, further))
+        return (far * self.strengths) @ near.T
 
 
 def first_passage(grid, z, lower, upper):
