@@ -27,6 +27,7 @@ from nonsmooth import models, quadrature
 from nonsmooth.elements import continuous, lagrange
 from nonsmooth.errors import SceneError
 from nonsmooth.expressions import vectorised
+from nonsmooth.ordinates import ends_of_zeros
 from nonsmooth.spectral import potential
 
 _LEVEL = 8.0  # depth of the level: logarithm of the largest invariant density over that there
@@ -43,7 +44,7 @@ _PROBED = 2001  # points at which g is looked at
 _LINEAR = 1e-12  # deviation of what is called linear
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # the same only if identical, to be a key of `march`
 class Tail:
     """The state between the bulk and a far start, y turned so that the start is positive.
 
@@ -198,11 +199,12 @@ def tail(scene):
             "sign there; start nearer or use method='monte_carlo'"
         )
     everywhere = np.linspace(-2 * start, 2 * start, _PROBED)
-    changes = [
+    zeros, *others = [
         quadrature.sign_changes(vectorised(f, (y,)), everywhere)
         for f in [expression, *quadrature.switches(expression)]
     ]
-    places = side * np.concatenate([[knot, -knot], *changes])
+    zeros = ends_of_zeros(g, zeros, 2 * start)
+    places = side * np.concatenate([[knot, -knot], zeros, *others])
     kinks = np.unique(places[places > level])
     floor = max(places[(places > 0) & (places <= level)], default=0.0)
     lines = None if len(kinks) else tuple(_line(f, probe) for f in (drift, speed))
@@ -273,6 +275,12 @@ class Law:
             (middle[:, None] + rest * v).ravel(),
             (masses / masses.sum()).ravel(),
         )
+
+
+@lru_cache(maxsize=16)
+def march(tail, lower, upper, degree):
+    """Return the `March` from where the start's descent ends."""
+    return March(tail, tail.law(tail.descent), lower, upper, degree)
 
 
 class March:

@@ -186,7 +186,7 @@ class _Late(_Line):
             depth,
             distances=(-self.lower, self.upper),
         )
-        march = far_start.March(tail, tail.law(tail.descent), self.lower, self.upper, degree)
+        march = far_start.march(tail, self.lower, self.upper, degree)
         return lambda z: march.mean(z, *waves(grid, z, self.lower, self.upper))
 
 
