@@ -35,7 +35,7 @@ _SPREADS = 6.5  # standard deviations beyond which nothing is looked for; outsid
 _OUT_OF_REACH = 30.0  # ways that are exceeded with probability exp(-30) are left out
 _STAGES = 5  # of the Radau IIA method, of order 9
 # phase by which exp(-z t) turns in a step, times the degree; and in an element
-_TURN, _ROTATION = 5.0, 12.0
+_TURN, _ROTATION = 5.0, 40.0
 _WIDTH = 0.9  # of elements, relative to the spread of velocities on the way to the level
 _BEYOND = 4.0  # spreads by which the grid goes beyond the start
 _COARSE = 7  # degree for the longest way
@@ -366,7 +366,8 @@ class _Grid:
         self._band, self._entering = _band(generator[1:, 1:], degree), generator[1:, 0]
         nodes, matrix = radau(_STAGES)
         self._shifts, self._vectors = np.linalg.eig(np.linalg.inv(matrix))
-        place = np.clip(length - ways, 0.0, length) / width
+        # where nothing moves, the end of the step is the stationary solution
+        place = np.clip(length - ways, 0.0, length) / width if length > 0 else np.ones(len(ways))
         where = np.minimum(place.astype(int), self.count - 1)
         within = lagrange(2 * np.append(0.0, nodes) - 1, 2 * (place - where) - 1)[0]
         across = axis.interpolation(velocities)

@@ -216,11 +216,13 @@ def _refined(problem, times, tol):
     saddles = _saddles(problem, times)
     worst = np.inf
     first = 0 if tol >= problem.loose else 1
-    solution = _solve(problem, times, saddles, *problem.levels[first])
+    found = _solve(problem, times, saddles, *problem.levels[first])
     odd = problem.scene.is_odd()
     for level in problem.levels[first + 1 :]:
-        coarse, solution = solution, _solve(problem, times, saddles, *level)
-        error = _SAFETY[odd] * np.abs(solution - coarse)
+        coarse, found = found, _solve(problem, times, saddles, *level)
+        solution = np.clip(found, 0.0, 1.0)
+        # not clipped before: two contours that both fail would agree on 0 or 1
+        error = _SAFETY[odd] * np.abs(found - coarse) + np.abs(found - solution)
         error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
         error += problem.inexact * solution + _UNDERFLOW
         error += _ROUNDING[odd] * problem.scene.damping * times * solution[0] * solution[1]
@@ -377,7 +379,7 @@ def _solve(problem, times, saddles, resolution, count, spacing):
         for here in _windows(late, len(times), (times, _WINDOW)):
             found[1, here] = _survival(transform(here), around_poles(here, pole), times[here])
             found[0, here] = 1 - found[1, here]
-    return np.clip(found, 0.0, 1.0)
+    return found
 
 
 def _probability(transform, contour, times, last):
