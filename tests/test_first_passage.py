@@ -242,11 +242,6 @@ class TestSpectral:
         gap = np.abs(sample.probability - found.probability)
         assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
 
-    def test_a_start_out_of_reach(self):
-        """The message names the cure."""
-        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
-            exact(0.6, [1.0], 1, ns.Scene("friction", start={"y": 50.0}))
-
     def test_survival_decays_like_its_leading_pole(self):
         """To relative accuracy, far below the rounding of 1 - W."""
         survival = exact(0.6, [60.0, 80.0, 100.0], 1000).survival.values

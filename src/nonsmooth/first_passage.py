@@ -6,20 +6,20 @@ window. Where the probability, or the survival probability, is small, its contou
 saddle point or at the leading pole instead of 0: the error is then relative.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
-from nonsmooth import first_passage_plane, models
+from nonsmooth import far_start, first_passage_plane, models
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.expressions import vectorised
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
 from nonsmooth.scene import Scene
 from nonsmooth.spectral import applies, potential
-from nonsmooth.transport import first_passage
+from nonsmooth.transport import first_passage, waves
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
 # rises; more nodes, of larger real part, would only make the rounding errors grow
@@ -45,8 +45,10 @@ _MOST = 80  # terms of a contour through a saddle
 _ROUNDING = {True: 1e-14, False: 1e-13}
 _SAFETY = {True: 1.0, False: 3.0}  # without symmetry levels do not converge regularly
 _SMALL = 1e-3  # survival probabilities below get contours of their own
-_TAIL, _FARTHEST = 16.0, 80.0  # depth of a start where digits are lost, where none are left
+_TAIL = 16.0  # depth of a start beyond which the modes lose digits
 _UNDERFLOW = 1e-300
+_DENSER = 0.65  # spacing of nodes where, from a far start, the probability rises fast up to 1
+_NEGLECTED = 1e-9  # bound of what is left out of the law of a far start
 _AXIS, _COARSE = 0.6, 6  # spacing of log z on the axis in the search for saddles; degree
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
 _DEPTH = 26.0  # the grid ends where the density has fallen by exp(-26), relative to the same
@@ -90,12 +92,9 @@ def spectral_crossing(scene, lower, upper, times, tol):
             f"({', '.join(scene.state)}) with {scene.noise.title} and n = {scene.n:g}; "
             "use method='monte_carlo'"
         )
-    if applies(scene) and _start_depth(scene) > _FARTHEST:
-        raise SceneError(
-            f"the start y = {scene.start['y']:g} is too far in the tails, where the modes of the "
-            "transport equation have no digits; start nearer or use method='monte_carlo'"
-        )
     try:
+        if applies(scene) and _start_depth(scene) > _TAIL:
+            return _from_afar(scene, lower, upper, times, _Line.tol if tol is None else tol)
         return _refined(problem, times, problem.tol if tol is None else tol)
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
         raise ToleranceError(
@@ -127,6 +126,7 @@ class _Line:
     tol = 1e-7
     relative = True
     levels, loose = _LEVELS, _LOOSE
+    cure = "loosen tol"
     # what is taken as 0: probabilities, and values of the transform
     negligible, rounded = 1e-14, 1e-70
     inexact = 1e-13  # what no refinement shows, relative
@@ -137,16 +137,6 @@ class _Line:
     def two_sided(self):
         """Whether both levels are finite."""
         return np.isfinite(self.lower) and np.isfinite(self.upper)
-
-    @property
-    def cure(self):
-        """What to do where the tolerance is not met."""
-        if _start_depth(self.scene) <= _TAIL:
-            return "loosen tol"
-        return (
-            f"loosen tol, start nearer to the bulk than y = {self.scene.start['y']:g}, or use "
-            "method='monte_carlo'"
-        )
 
     def near_axis(self, radius, depth):
         """Return z -> E exp(-z tau) for |z| = radius; on the axis, of the order exp(-depth)."""
@@ -171,15 +161,68 @@ class _Line:
         return self.scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
 
 
+@dataclass(frozen=True)
+class _Late(_Line):
+    """What is left of a far start after its descent to the bulk.
+
+    Attributes
+    ----------
+    tail : far_start.Tail
+    """
+
+    tail: far_start.Tail
+    relative = False
+    levels = tuple((degree, count, _DENSER * spacing) for degree, count, spacing in _LEVELS)
+    last = 1e-9
+    cure = "loosen tol, or use method='monte_carlo'"
+
+    def _on(self, degree, time, reach, depth):
+        tail = self.tail
+        grid = ordinates(
+            replace(self.scene, start={"y": tail.side * tail.level}),
+            degree,
+            time,
+            reach,
+            depth,
+            distances=(-self.lower, self.upper),
+        )
+        march = far_start.march(tail, self.lower, self.upper, degree)
+        return lambda z: march.mean(z, *waves(grid, z, self.lower, self.upper))
+
+
+def _from_afar(scene, lower, upper, times, tol):
+    """`spectral_crossing` from a start in the tail: normal at first, then by `_Late`."""
+    tail = far_start.tail(scene)
+    distance = upper if tail.towards > 0 else -lower
+    passed = np.array([tail.law(t).passed(distance) for t in np.minimum(times, tail.flight)])
+    error = np.full(len(times), _NEGLECTED)
+    late = times > tail.flight
+    if late.any() and 1 - tail.law(tail.flight).passed(distance) > _NEGLECTED:
+        left = 1 - tail.law(tail.descent).passed(distance)
+        problem = _Late(scene, lower, upper, tail)
+        # a level may no more than halve the error
+        found = _refined(problem, times[late] - tail.descent, tol / (2 * left))
+        passed[late] = 1 - left * found["survival"]
+        error[late] += 2 * left * found["probability_error"]
+    return {
+        "probability": passed,
+        "probability_error": error,
+        "survival": 1 - passed,
+        "survival_error": error,
+    }
+
+
 def _refined(problem, times, tol):
     saddles = _saddles(problem, times)
     worst = np.inf
     first = 0 if tol >= problem.loose else 1
-    solution = _solve(problem, times, saddles, *problem.levels[first])
+    found = _solve(problem, times, saddles, *problem.levels[first])
     odd = problem.scene.is_odd()
     for level in problem.levels[first + 1 :]:
-        coarse, solution = solution, _solve(problem, times, saddles, *level)
-        error = _SAFETY[odd] * np.abs(solution - coarse)
+        coarse, found = found, _solve(problem, times, saddles, *level)
+        solution = np.clip(found, 0.0, 1.0)
+        # not clipped before: two contours that both fail would agree on 0 or 1
+        error = _SAFETY[odd] * np.abs(found - coarse) + np.abs(found - solution)
         error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
         error += problem.inexact * solution + _UNDERFLOW
         error += _ROUNDING[odd] * problem.scene.damping * times * solution[0] * solution[1]
@@ -336,7 +379,7 @@ def _solve(problem, times, saddles, resolution, count, spacing):
         for here in _windows(late, len(times), (times, _WINDOW)):
             found[1, here] = _survival(transform(here), around_poles(here, pole), times[here])
             found[0, here] = 1 - found[1, here]
-    return np.clip(found, 0.0, 1.0)
+    return found
 
 
 def _probability(transform, contour, times, last):

@@ -363,6 +363,14 @@ def _tail_reference():
     return _integrated_ornstein_uhlenbeck(1.0, 2.0)
 
 
+def _flown():
+    """P(int y >= 40) at t = 1.6, normal: the friction is 1 until then, y from 50 above 8."""
+    t = 1.6
+    mean = -51 * math.expm1(-t) - t
+    deviation = math.sqrt(_integrated_ornstein_uhlenbeck(1.0, t).value)
+    return Result(math.erfc((40 - mean) / deviation / math.sqrt(2)) / 2, 1e-12)
+
+
 CASES = [
     Case(
         "$n = 10^6$, $h = 0.1$",
@@ -590,6 +598,12 @@ CASES = [
     ),
     Case("start at $y = 50$", "simulate", _simulated(_TAIL, 2.0, step=0.02), _tail_reference),
     Case("start at $y = 50$", "variance", _solved(_TAIL, 2.0), None),
+    Case(
+        "start at $y = 50$",
+        "crossing, spectral",
+        _crossed(_TAIL, 40.0, 1.6, method="spectral"),
+        _flown,
+    ),
     Case(
         "start at $\\eta = 50$, $v = \\eta^4\\!/4$",
         "simulate",

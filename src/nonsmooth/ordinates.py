@@ -180,8 +180,8 @@ def ordinates(
     return Ordinates(True, y[upper], g[upper], 2 * own * masses[upper], halves, start)
 
 
-def _ends_of_zeros(g, places, end):
-    """Those of the places at which g vanishes, but not on both sides."""
+def ends_of_zeros(g, places, end):
+    """Return those of the places at which g vanishes, but not on both sides."""
     places = np.unique(places)
     beside = np.abs(g(places[:, None] + np.array([-1e-9, 1e-9]) * end))
     # a zero that was bisected is not exact; next to it g is small, next to a pole or a kink not
@@ -216,7 +216,7 @@ def _edges(scene, depth, kinks, switches, time, reach, deepest, grading, distanc
     inside = np.linspace(-end, end, 501)
     functions = [vectorised(f, (models.y,)) for f in switches]
     zeros, *others = [quadrature.sign_changes(f, inside) for f in functions]
-    zeros = _ends_of_zeros(functions[0], np.concatenate([zeros, *others]), end)
+    zeros = ends_of_zeros(functions[0], np.concatenate([zeros, *others]), end)
     starts = [start, -start] if scene.is_odd() else [start]
     singular = np.append(zeros, starts)
     finest = np.append(np.full(len(zeros), _FINEST), np.full(len(starts), _PASSING)) * fine

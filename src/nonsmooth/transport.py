@@ -132,6 +132,29 @@ def _of_all(grid, resolvent, balance):
     return decaying(decay, rates, up), decaying(~decay, -rates, ~up)
 
 
+@dataclass(frozen=True)
+class Waves:
+    """E exp(-z tau) from the start's velocity, sum of `strengths` exp(-`rates` distance).
+
+    Attributes
+    ----------
+    strengths, rates : numpy.ndarray, shape (m,)
+        Of the modes of one wall.
+    """
+
+    strengths: np.ndarray
+    rates: np.ndarray
+
+    def at(self, distance):
+        """Sum at a distance from the wall."""
+        return np.exp(-self.rates * distance) @ self.strengths
+
+    def grid(self, distances, further):
+        """Sum at all distances[i] + further[k], neither negative."""
+        far, near = (np.exp(-np.outer(part, self.rates)) for part in (distances, further))
+        return (far * self.strengths) @ near.T
+
+
 def first_passage(grid, z, lower, upper):
     """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
 
@@ -146,13 +169,31 @@ def first_passage(grid, z, lower, upper):
     -------
     complex
     """
+    above, below = waves(grid, z, lower, upper)
+    return sum(w.at(d) for w, d in ((above, upper), (below, -lower)) if np.isfinite(d))
+
+
+def waves(grid, z, lower, upper):
+    """E exp(-z tau) as a function of the place, int_0^t g beginning at one in (lower, upper).
+
+    Parameters
+    ----------
+    grid, z, lower, upper
+        As of `first_passage`.
+
+    Returns
+    -------
+    above, below : Waves
+        Of the upper and of the lower wall; none where the wall is infinitely far.
+    """
     above, below = modes(grid, z)
     g, weights = grid.g[grid.moving], np.sqrt(grid.masses[grid.moving])
     up, down = (slice(None),) * 2 if grid.mirrored else (g > 0, g < 0)
+    none = Waves(np.zeros(0), np.zeros(0))
     if np.isinf(lower):
-        return _of_one_wall(above, below, upper, np.abs(g[up]), np.abs(g[down]), weights[up])
+        return _of_one_wall(above, below, np.abs(g[up]), np.abs(g[down]), weights[up]), none
     if np.isinf(upper):
-        return _of_one_wall(below, above, -lower, np.abs(g[down]), np.abs(g[up]), weights[down])
+        return none, _of_one_wall(below, above, np.abs(g[down]), np.abs(g[up]), weights[down])
     far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
     if grid.mirrored:  # both walls see the same
         strength = np.linalg.solve(above.own + above.other * far_above, weights)
@@ -167,12 +208,13 @@ def first_passage(grid, z, lower, upper):
             ),
             [len(above.rates)],
         )
-    return (above.start * np.exp(-above.rates * upper)) @ strengths[0] + (
-        below.start * np.exp(below.rates * lower)
-    ) @ strengths[1]
+    return (
+        Waves(above.start * strengths[0], above.rates),
+        Waves(below.start * strengths[1], below.rates),
+    )
 
 
-def _of_one_wall(wall, opposite, distance, leaving, entering, right):
+def _of_one_wall(wall, opposite, leaving, entering, right):
     """Sum the modes where the other wall is infinitely far.
 
     The solution is continued from Re z > 0, where modes decay as they leave. Beyond, those that the
@@ -186,5 +228,7 @@ def _of_one_wall(wall, opposite, distance, leaving, entering, right):
     decays = np.repeat([1.0, -1.0], [len(wall.rates), len(opposite.rates)])
     order = np.argsort(-np.where(np.abs(flux) > _DIRECTED, flux, _DIRECTED * decays), stable=True)
     chosen = order[: len(right)]
-    carried = np.append(wall.start * np.exp(-wall.rates * distance), np.zeros(len(opposite.rates)))
-    return carried[chosen] @ np.linalg.solve(own[:, chosen], right)
+    start = np.append(wall.start, np.zeros(len(opposite.rates)))
+    rates = np.append(wall.rates, np.zeros(len(opposite.rates)))
+    strengths = start[chosen] * np.linalg.solve(own[:, chosen], right)
+    return Waves(strengths, rates[chosen])
