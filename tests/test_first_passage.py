@@ -211,6 +211,24 @@ class TestSpectral:
             swapped = first_passage(ordinates(mirrored, 9, 1.0), z, -levels[1], -levels[0])
             assert abs(swapped - values[1]) < 1e-9
 
+    def test_the_whole_grid_agrees_with_the_half(self, monkeypatch):
+        """Odd g, within both stated errors, with equal and unequal thresholds."""
+        thresholds = 0.6, (-0.3, 0.6)
+        halves = [exact(threshold, [2.0], 1) for threshold in thresholds]
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
+        for threshold, half in zip(thresholds, halves, strict=True):
+            whole = exact(threshold, [2.0], 1)
+            gap = np.abs(whole.probability - half.probability)
+            assert np.all(gap <= whole.probability_error + half.probability_error)
+
+    def test_reflection(self):
+        """-g(-y) crosses the thresholds swapped with the same probability."""
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        one = exact((-0.3, 0.6), [2.0], 1, SKEWED)
+        other = exact((-0.6, 0.3), [2.0], 1, mirrored)
+        gap = np.abs(one.probability - other.probability)
+        assert np.all(gap <= one.probability_error + other.probability_error)
+
     def test_two_zeros_of_g(self):
         """A g that is positive in both tails; false alarms 1e-5."""
         with pytest.warns(AssumptionWarning):
