@@ -39,7 +39,7 @@ def of_one_variable(line):
         generator[parity] = sp.csc_array(matrix[np.ix_(kept, kept)])
         start[parity] = line.start[parity][kept]
     way = np.sqrt(line.masses @ line.g**2)
-    return PlaneOrdinates(line.g[moving], np.ones(len(moving)), way, 0, generator, start)
+    return PlaneOrdinates(line.g[moving], np.ones(len(order)), way, 0, generator, start)
 
 
 class TestSlab:
@@ -65,7 +65,8 @@ class TestSlab:
         grid = grid_of(SCENES[name][0])
         for z in (1e-6, 1e-8):
             made = slab(grid, z, 1.0, 8)
-            lost = grid.ones - (made.reflection + made.transmission) @ grid.ones
+            ones = grid.ones[: len(grid.speeds)]
+            lost = ones - (made.reflection + made.transmission) @ ones
             assert np.max(np.abs(lost)) < 1e3 * z + 1e-9
 
     @pytest.mark.parametrize("name", SCENES)

@@ -7,14 +7,16 @@ saddle point or at the leading pole instead of 0: the error is then relative.
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
-from nonsmooth import first_passage_plane, models
+from nonsmooth import first_passage_march, first_passage_plane, models
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.expressions import vectorised
+from nonsmooth.first_passage_march import UnstableError
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
 from nonsmooth.scene import Scene
@@ -83,6 +85,13 @@ def spectral_crossing(scene, lower, upper, times, tol):
         problem = _Line(scene, lower, upper)
     elif first_passage_plane.applies(scene):
         problem = first_passage_plane.Plane(scene, lower, upper)
+        tol = problem.tol if tol is None else tol
+        if first_passage_march.applies(problem, times):
+            problem = first_passage_march.March(scene, lower, upper)
+            try:
+                return _refined(problem, times, tol, partial(problem.solve, times))
+            except UnstableError:  # slabs are not
+                problem = first_passage_plane.Plane(scene, lower, upper)
     else:
         raise SceneError(
             "the spectral method needs the state (y) and white noise, or two state variables with "
@@ -96,7 +105,8 @@ def spectral_crossing(scene, lower, upper, times, tol):
             "transport equation have no digits; start nearer or use method='monte_carlo'"
         )
     try:
-        return _refined(problem, times, problem.tol if tol is None else tol)
+        solve = partial(_solve, problem, times, _saddles(problem, times))
+        return _refined(problem, times, problem.tol if tol is None else tol, solve)
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
         raise ToleranceError(
             f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
@@ -171,14 +181,14 @@ class _Line:
         return self.scene.noise.sigma * np.sqrt(2 * time * (depth + _SPARE))
 
 
-def _refined(problem, times, tol):
-    saddles = _saddles(problem, times)
+def _refined(problem, times, tol, solve):
+    """Refine what `solve` returns at the problem's levels until two agree."""
     worst = np.inf
     first = 0 if tol >= problem.loose else 1
-    solution = _solve(problem, times, saddles, *problem.levels[first])
+    solution = solve(*problem.levels[first])
     odd = problem.scene.is_odd()
     for level in problem.levels[first + 1 :]:
-        coarse, solution = solution, _solve(problem, times, saddles, *level)
+        coarse, solution = solution, solve(*level)
         error = _SAFETY[odd] * np.abs(solution - coarse)
         error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
         error += problem.inexact * solution + _UNDERFLOW
