@@ -25,9 +25,9 @@ _LEVELS = (
     (5, 3, 4.0, 0.1),
     (6, 3, 4.0, 0.1),
     (7, 4, 3.0, 0.1),
-    (5, 4, 3.0, 0.01),
-    (7, 5, 3.0, 0.01),
-    (8, 5, 2.0, 0.01),
+    (6, 3, 3.0, 0.01),
+    (8, 4, 3.0, 0.01),
+    (9, 5, 3.0, 0.01),
 )
 _FAST = 1.5  # the same in a variable that noise drives, in units of sigma sqrt(t)
 _WITHIN = (0.125, 0.35)  # edges in a wall, relative to its depth
