@@ -26,7 +26,7 @@ from nonsmooth.poisson import EVEN, ODD
 
 # resolution of the state; degree in x, and its smallest element over the lesser of the distance and
 # of the way that g goes while it relaxes; steps, relative to the longest
-_LEVELS = ((4, 4, 1e-2, 1.0), (5, 4, 5e-3, 0.7), (6, 4, 2.5e-3, 0.5))
+_LEVELS = ((1, 3, 2e-2, 1.4), (4, 4, 1e-2, 1.0), (5, 4, 5e-3, 0.7), (6, 4, 2.5e-3, 0.5))
 _RATIO = 2.0  # of neighbouring elements in x
 _LONGEST = 0.1  # step, in relaxation times of the damping
 _FIRST, _EARLY = 5e-3, 4.0  # first step over the mean duration, which is cut at relaxation times
@@ -77,7 +77,7 @@ class March(Plane):
         As of `Plane`.
     """
 
-    levels = _LEVELS
+    levels, loose = _LEVELS, 1e-3
 
     def solve(self, times, resolution, degree, finest, shorter):
         """Probability and survival probability on one grid.
