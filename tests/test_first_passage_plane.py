@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from scipy.integrate import simpson
 
 import nonsmooth as ns
 from nonsmooth import first_passage_plane as plane
 from nonsmooth import transport
 from nonsmooth.errors import SceneError
+from nonsmooth.first_passage_march import March
 from nonsmooth.ordinates import ordinates
 from nonsmooth.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
@@ -39,7 +41,7 @@ def of_one_variable(line):
         generator[parity] = sp.csc_array(matrix[np.ix_(kept, kept)])
         start[parity] = line.start[parity][kept]
     way = np.sqrt(line.masses @ line.g**2)
-    return PlaneOrdinates(line.g[moving], np.ones(len(moving)), way, 0, generator, start)
+    return PlaneOrdinates(line.g[moving], np.ones(len(order)), way, 0, generator, start)
 
 
 class TestSlab:
@@ -65,7 +67,8 @@ class TestSlab:
         grid = grid_of(SCENES[name][0])
         for z in (1e-6, 1e-8):
             made = slab(grid, z, 1.0, 8)
-            lost = grid.ones - (made.reflection + made.transmission) @ grid.ones
+            ones = grid.ones[: len(grid.speeds)]
+            lost = ones - (made.reflection + made.transmission) @ ones
             assert np.max(np.abs(lost)) < 1e3 * z + 1e-9
 
     @pytest.mark.parametrize("name", SCENES)
@@ -105,18 +108,38 @@ class TestCrossing:
     """The inverted transform against what does not use it."""
 
     @pytest.mark.parametrize(
-        ("name", "paths"), [("friction", 4000), ("plastic", 2000), ("obstacle", 20000)]
+        ("name", "paths", "p"),
+        [
+            ("friction", 4000, 3),
+            ("plastic", 2000, 3),
+            ("obstacle", 20000, 3),
+            ("obstacle", 2000, 300),  # so long that it is not marched
+        ],
     )
-    def test_agrees_with_monte_carlo(self, name, paths):
-        """Within 4.5 standard errors, false alarms 2e-5 in all, and the measured bias."""
+    def test_agrees_with_monte_carlo(self, name, paths, p):
+        """Within 4.5 standard errors, false alarms 3e-5 in all, and the measured bias."""
         scene, level = SCENES[name]
         horizons = [2.0]
-        found = ns.crossing_probability(scene, level, horizons, 30, method="spectral", tol=2e-3)
+        found = ns.crossing_probability(scene, level, horizons, p, method="spectral", tol=2e-3)
         assert np.all(found.probability_error < 2e-3)
-        sample = ns.crossing_probability(scene, level, horizons, 30, step=0.02, paths=paths, seed=7)
+        sample = ns.crossing_probability(scene, level, horizons, p, step=0.02, paths=paths, seed=7)
         allowed = 4.5 * sample.probability_error + np.abs(sample.step_bias)
         allowed += 4.5 * sample.step_bias_error + found.probability_error
         assert np.all(np.abs(found.probability - sample.probability) < allowed)
+
+    @pytest.mark.parametrize(
+        ("name", "levels"), [("friction", (-0.3, 0.3)), ("obstacle", (-0.8, 1.2))]
+    )
+    def test_marching_agrees_with_the_transform(self, name, levels):
+        """Of the marched curve, integrated to exp(-10); each on a coarse grid, good to 5e-4."""
+        scene, z = SCENES[name][0], 0.5
+        marched = March(scene, *levels)
+        times = np.linspace(0.0, 20.0, 801)[1:]
+        found = marched.solve(times, *marched.levels[0])[0]
+        integral = z * simpson(np.append(0.0, np.exp(-z * times) * found), dx=times[0])
+        integral += np.exp(-z * times[-1]) * found[-1]
+        transform = plane.Plane(scene, *levels).transform(0, times, None)
+        assert integral == pytest.approx(transform(z), abs=1e-3)
 
     def test_a_scene_of_four_variables_is_told_to_sample(self):
         """The message names the method."""

@@ -7,14 +7,16 @@ saddle point or at the leading pole instead of 0: the error is then relative.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
-from nonsmooth import far_start, first_passage_plane, models
+from nonsmooth import far_start, first_passage_march, first_passage_plane, models
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.expressions import vectorised
+from nonsmooth.first_passage_march import UnstableError
 from nonsmooth.laplace import hyperbola, through_saddle
 from nonsmooth.ordinates import ordinates
 from nonsmooth.scene import Scene
@@ -85,6 +87,13 @@ def spectral_crossing(scene, lower, upper, times, tol):
         problem = _Line(scene, lower, upper)
     elif first_passage_plane.applies(scene):
         problem = first_passage_plane.Plane(scene, lower, upper)
+        tol = problem.tol if tol is None else tol
+        if first_passage_march.applies(problem, times):
+            problem = first_passage_march.March(scene, lower, upper)
+            try:
+                return _refined(problem, times, tol, partial(problem.solve, times))
+            except UnstableError:  # slabs are not
+                problem = first_passage_plane.Plane(scene, lower, upper)
     else:
         raise SceneError(
             "the spectral method needs the state (y) and white noise, or two state variables with "
@@ -93,9 +102,10 @@ def spectral_crossing(scene, lower, upper, times, tol):
             "use method='monte_carlo'"
         )
     try:
+        tol = problem.tol if tol is None else tol
         if applies(scene) and _start_depth(scene) > _TAIL:
-            return _from_afar(scene, lower, upper, times, _Line.tol if tol is None else tol)
-        return _refined(problem, times, problem.tol if tol is None else tol)
+            return _from_afar(scene, lower, upper, times, tol)
+        return _refined(problem, times, tol, _by_contours(problem, times))
     except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
         raise ToleranceError(
             f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
@@ -201,7 +211,8 @@ def _from_afar(scene, lower, upper, times, tol):
         left = 1 - tail.law(tail.descent).passed(distance)
         problem = _Late(scene, lower, upper, tail)
         # a level may no more than halve the error
-        found = _refined(problem, times[late] - tail.descent, tol / (2 * left))
+        rest = times[late] - tail.descent
+        found = _refined(problem, rest, tol / (2 * left), _by_contours(problem, rest))
         passed[late] = 1 - left * found["survival"]
         error[late] += 2 * left * found["probability_error"]
     return {
@@ -212,14 +223,19 @@ def _from_afar(scene, lower, upper, times, tol):
     }
 
 
-def _refined(problem, times, tol):
-    saddles = _saddles(problem, times)
+def _by_contours(problem, times):
+    """Return what solves the problem at a level by inverting the transform."""
+    return partial(_solve, problem, times, _saddles(problem, times))
+
+
+def _refined(problem, times, tol, solve):
+    """Refine what `solve` returns at the problem's levels until two agree."""
     worst = np.inf
     first = 0 if tol >= problem.loose else 1
-    found = _solve(problem, times, saddles, *problem.levels[first])
+    found = solve(*problem.levels[first])
     odd = problem.scene.is_odd()
     for level in problem.levels[first + 1 :]:
-        coarse, found = found, _solve(problem, times, saddles, *level)
+        coarse, found = found, solve(*level)
         solution = np.clip(found, 0.0, 1.0)
         # not clipped before: two contours that both fail would agree on 0 or 1
         error = _SAFETY[odd] * np.abs(found - coarse) + np.abs(found - solution)

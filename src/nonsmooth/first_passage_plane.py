@@ -92,14 +92,14 @@ def first_passage(grid, z, lower, upper, resolution):
         doublings = max(_FEWEST + resolution, math.ceil(math.log2(thickness / thin)))
         return slab(grid, z, thickness, doublings)
 
-    one = np.eye(len(grid.speeds))
+    one, ones = np.eye(len(grid.speeds)), grid.ones[: len(grid.speeds)]
     if lower == -upper:
         half = made(upper)
-        even = np.linalg.solve(one - half.reflection, half.transmission @ grid.ones)
+        even = np.linalg.solve(one - half.reflection, half.transmission @ ones)
         return grid.start_row(z, EVEN) @ even
     # values at the start where the flow enters the slab above, and that below
     below, above = (made(abs(b)) if np.isfinite(b) else None for b in (lower, upper))
-    into = [s.transmission @ grid.ones if s else 0 * grid.ones for s in (below, above)]
+    into = [s.transmission @ ones if s else 0 * ones for s in (below, above)]
     below = below.reflection if below else half_space(above)
     above = above.reflection if above else half_space(made(abs(lower)))
     up = np.linalg.solve(one - above @ below, into[1] + above @ into[0])

@@ -21,12 +21,15 @@ from nonsmooth.penalties import n as penalization
 from nonsmooth.poisson import EVEN, ODD
 
 # Hermite degrees; degree in x; ends of the elements relative to the distance of the walls, and
-# within a wall relative to its depth
+# within a wall relative to its depth: of slabs, and of a march, which many nodes cost less
 _LEVELS = (
     (12, 5, (0.3, 1.0), (0.5, 1.0)),
     (16, 6, (0.3, 1.0), (0.5, 1.0)),
     (18, 6, (0.2, 1.0), (0.25, 0.6, 1.0)),
     (22, 6, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
+    (36, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+    (60, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+    (80, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
 )
 
 
@@ -103,8 +106,7 @@ def gibbs_ordinates(scene, ends, level):
         start[parity] = np.hstack(row)[0][order]
     above = masses[0][len(masses[0]) // 2 :]
     way = math.sqrt((above @ g[0] ** 2) / above.sum()) / scene.damping
-    counts = [len(kept[k % 2]) for k in range(many)]
-    ones = np.repeat(np.arange(many) == 0, counts).astype(float)
+    ones = (order < len(nodes[0])).astype(float)  # that of EVEN, the last
     speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
     return PlaneOrdinates(speeds, ones, way, size - len(speeds), generator, start)
 

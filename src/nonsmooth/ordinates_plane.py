@@ -18,9 +18,17 @@ from nonsmooth.poisson import EVEN, ODD, Direct
 from nonsmooth.refinement import fitted
 
 _DEPTH = 14.0  # the density outside the box is of the order exp(-14) of its maximum
-# polynomial degree of the variable that noise drives and of the other; ratio of graded edges
-_LEVELS = ((4, 2, 4.0), (5, 3, 4.0), (6, 3, 4.0), (7, 4, 3.0))
-_FINEST = 0.1  # element where g = 0, relative to the end
+# polynomial degree of the variable that noise drives and of the other; ratio of graded edges, and
+# the element where g = 0, relative to the end: of slabs, and of a march, which many nodes cost less
+_LEVELS = (
+    (4, 2, 4.0, 0.1),
+    (5, 3, 4.0, 0.1),
+    (6, 3, 4.0, 0.1),
+    (7, 4, 3.0, 0.1),
+    (6, 4, 3.0, 0.01),
+    (8, 4, 3.0, 0.01),
+    (8, 4, 2.0, 0.01),
+)
 _FAST = 1.5  # the same in a variable that noise drives, in units of sigma sqrt(t)
 _WITHIN = (0.125, 0.35)  # edges in a wall, relative to its depth
 DROPPED = 1e-5  # part of the mean of |g| that nodes may carry that are taken to stand still
@@ -34,8 +42,8 @@ class PlaneOrdinates:
     ----------
     speeds : numpy.ndarray, shape (k,)
         g at the moving nodes.
-    ones : numpy.ndarray, shape (k,)
-        The function 1 there.
+    ones : numpy.ndarray
+        The function 1, at all nodes of even functions.
     way : float
         Standard deviation of g times the relaxation time of the damping.
     held : int
@@ -113,7 +121,7 @@ def plane_ordinates(scene, ends, level, time):
     way = math.sqrt(np.abs(2 * solve.fold(solve.stationary())) @ g**2) / scene.damping
     return PlaneOrdinates(
         g[moving],
-        np.ones(len(moving)),
+        np.ones(half),
         way,
         0,
         generator,
@@ -131,12 +139,13 @@ def _moving(solve, g, start, time):
 
 
 def _axes(scene, ends, level, time):
-    driven_degree, degree, ratio = _LEVELS[level]
+    driven_degree, degree, ratio, finest = _LEVELS[level]
     made = {}
     for symbol in mesh.variables(scene):
         end = ends[symbol]
-        edges = _positive(scene, symbol, end, ratio, time)
-        edges = edges[(edges > 1e-12 * end) & (edges <= end)]
+        edges = _positive(scene, symbol, end, ratio, finest, time)
+        edges = np.unique(edges[(edges > 1e-12 * end) & (edges <= end)])
+        edges = edges[np.append(True, np.diff(edges) > 1e-9 * end)]
         edges = np.unique(np.concatenate([-edges, [0.0], edges]))
         if symbol == scene.noise.driven:
             made[symbol] = continuous(edges, driven_degree)
@@ -145,7 +154,7 @@ def _axes(scene, ends, level, time):
     return made
 
 
-def _positive(scene, symbol, end, ratio, time):
+def _positive(scene, symbol, end, ratio, share, time):
     """Edges on one side of the origin."""
     knot = mesh.knots(scene).get(symbol, 0.0)
     force = scene.observes_penalty_force and scene.mechanics.argument.name == "x"
@@ -154,18 +163,30 @@ def _positive(scene, symbol, end, ratio, time):
         if not (observed or force):
             return np.array([knot, end / 2, end])
         finest = min(end / 9, _FAST * scene.noise.sigma * math.sqrt(time))
-        return np.append(_graded(end, finest, ratio), knot)
+        return np.append(graded(end, finest, ratio), knot)
     wall = knot < end and scene.mechanics.argument == symbol and symbol.name == "x"
     edges = np.array([end, knot])
     if wall:
         edges = np.append(edges, knot + (end - knot) * np.array(_WITHIN))
     if force:
-        return np.append(edges, knot - _graded(knot / 2, knot / 64, ratio))
+        return np.append(edges, knot - graded(knot / 2, knot / 64, ratio))
     inner = knot if wall else end
-    return np.append(edges, _graded(inner, max(_FINEST * inner, 0.0 if wall else knot), ratio))
+    return np.append(edges, graded(inner, max(share * inner, 0.0 if wall else knot), ratio))
 
 
-def _graded(end, finest, ratio):
-    """Edges from an end down to an element no larger than the finest, in equal ratios."""
+def graded(end, finest, ratio):
+    """Edges from an end down to an element no larger than the finest, in equal ratios.
+
+    Parameters
+    ----------
+    end, finest : float
+    ratio : float
+        At most.
+
+    Returns
+    -------
+    numpy.ndarray
+        Decreasing.
+    """
     count = max(1, math.ceil(math.log(end / finest, ratio) - 1e-9))
     return end * (finest / end) ** (np.arange(count + 1) / count)
