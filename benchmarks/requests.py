@@ -24,7 +24,7 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth import quadrature, refinement, spectral, transient
+from nonsmooth import corrected, far_start, quadrature, refinement, spectral, transient
 from nonsmooth.crossing import first_passage_counts
 from nonsmooth.errors import NonsmoothError, ToleranceError
 from nonsmooth.growth import growth, integrals
@@ -409,7 +409,7 @@ def asymptotic(request):
         yield run
 
 
-def corrected(order):
+def by_correction(order):
     """Take a corrected formula, where the state is y and the noise white."""
 
     def runs(request):
@@ -581,9 +581,9 @@ QUANTITIES = {
         absolute,
         {
             "looser": looser(),
-            "corrected, order 1": corrected(1),
-            "corrected, order 2": corrected(2),
-            "corrected, order 3": corrected(3),
+            "corrected, order 1": by_correction(1),
+            "corrected, order 2": by_correction(2),
+            "corrected, order 3": by_correction(3),
             "monte_carlo": by_sampling,
             "spectral": by("spectral"),
             "looser spectral": looser(method="spectral"),
@@ -610,7 +610,8 @@ QUANTITIES = {
 
 def empty_caches():
     """Forget what has been computed of scenes; compiled formulas stay."""
-    quadrature._solved.cache_clear()
+    for kept in (quadrature._solved, corrected._constants, far_start.march):
+        kept.cache_clear()
 
 
 class Dearer(Exception):
