@@ -8,6 +8,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import erfc
 
 import nonsmooth as ns
+from nonsmooth import first_passage as first_passage_module
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.half_space import walls
 from nonsmooth.laplace import hyperbola
@@ -273,6 +274,24 @@ class TestSpectral:
         assert found.probability_error[0] >= 1e-14
         assert np.all(np.diff(found.probability) > 0)
         assert found.probability_error[1] < 1e-3 * found.probability[1] < 1e-10
+
+    def test_contours_end_where_crossings_are_negligible(self, monkeypatch):
+        """Earlier times get none, though without a good bound: at most one at each level."""
+        begins = []
+        probability = first_passage_module._probability
+
+        def recorded(*problem):
+            found = probability(*problem)
+            begins.append(abs(found[0]))
+            return found
+
+        monkeypatch.setattr(first_passage_module, "_probability", recorded)
+        times = [0.01, 0.1, 0.3, 1.0, 5.0, 10.0, 20.0]
+        found = exact(0.6, times, 0.01, SKEWED, tol=1e-3)  # by two levels
+        assert np.sum(np.array(begins) < 1e-15) <= 2
+        assert np.all(found.probability[:2] == 0)
+        assert np.all(found.probability_error[:2] >= 1e-14)
+        assert found.probability[-1] > 0.1
 
     def test_a_crossing_that_is_out_of_reach(self):
         """The transform is below rounding on all of the axis that matters."""

@@ -46,6 +46,7 @@ _MOST = 80  # terms of a contour through a saddle
 # without symmetry the slow mode is not apart
 _ROUNDING = {True: 1e-14, False: 1e-13}
 _SAFETY = {True: 1.0, False: 3.0}  # without symmetry levels do not converge regularly
+_SURELY = 0.1  # of what is negligible: two levels below, and their difference, leave it so
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _TAIL = 16.0  # depth of a start beyond which the modes lose digits
 _UNDERFLOW = 1e-300
@@ -380,11 +381,20 @@ def _solve(problem, times, saddles, resolution, count, spacing):
         nodes = round(count + _PER_DECADE * np.log10(end / begin))
         return hyperbola(begin, end, nodes, _SECTOR, first)
 
-    for here in _windows(begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)):
+    rise = [
+        (here, transform(here))
+        for here in _windows(
+            begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)
+        )
+    ]
+    for here, of_rise in reversed(rise):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
         tilt = np.min(saddles.tilt[here])
         contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
-        found[0, here] = _probability(transform(here), contour, times[here], problem.last)
+        found[0, here] = _probability(of_rise, contour, times[here], problem.last)
+        # the probability increases: earlier ones are negligible, too, and the bound was too weak
+        if problem.relative and abs(found[0, here.start]) < _SURELY * problem.negligible:
+            break
     for here in _windows(rises, len(times), (times, _WINDOW)):
         contour = around_poles(here)
         found[0, here] = _probability(transform(here), contour, times[here], problem.last)

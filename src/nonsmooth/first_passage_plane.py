@@ -53,16 +53,17 @@ class Plane:
 
     def near_axis(self, _radius, _depth):
         """Return z -> E exp(-z tau) on the coarsest grid."""
-        return lambda z: self._transform(0, z, 1 / self.scene.damping)
+        return self._on(0, 1 / self.scene.damping)
 
     def transform(self, resolution, times, _rarity):
         """Return z -> E exp(-z tau)."""
-        return lambda z: self._transform(resolution, z, times[0])
+        return self._on(resolution, times[0])
 
-    def _transform(self, resolution, z, time):
+    def _on(self, resolution, time):
         if resolution not in self._grids:  # of the shortest time, which is asked for first
             self._grids[resolution] = self._grid(resolution, time)
-        return first_passage(self._grids[resolution], z, self.lower, self.upper, resolution)
+        grid = self._grids[resolution]
+        return lambda z: first_passage(grid, z, self.lower, self.upper, resolution)
 
     def _grid(self, resolution, time):
         if ordinates_gibbs.applies(self.scene):
