@@ -325,8 +325,8 @@ def one_degree(solve):
     return runs
 
 
-def one_grid(solve, levels=(0, 1, 2, 3, 4, 5)):
-    """Solve on a single tensor grid, of the same level in all variables."""
+def one_grid(solve, levels=(0, 1, 2, 3, 4, 5), most=4):
+    """Solve on a single tensor grid, of the same level in all of up to `most` variables."""
 
     def on(request, level):
         depth = math.log(1 / request.tol) + refinement.SPARE
@@ -570,7 +570,7 @@ QUANTITIES = {
         },
         {
             "one degree": one_degree(moments_on_degree),
-            "one grid": one_grid(moments_on),
+            "one grid": one_grid(moments_on, most=2),
             "plain Monte Carlo": plain_variance,
         },
     ),

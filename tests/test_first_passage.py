@@ -342,4 +342,4 @@ class TestSpectral:
     def test_other_scenes_are_told_to_sample(self):
         """The message names the method to use."""
         with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
-            exact(0.6, [1.0], 1, ns.Scene("friction", "langevin"))
+            exact(0.6, [1.0], 1, ns.Scene("friction", "hamiltonian"))

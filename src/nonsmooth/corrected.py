@@ -78,7 +78,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
         raise SceneError(
             f"the corrected formula has the orders 1, 2 and 3, not {order!r}; choose one"
         )
-    constants, errors, known = _constants(scene, seed, threads)
+    known = _highest_order(scene)
     if order > known:
         need = "the state (y) and white noise" if known == 1 else "odd g"
         raise SceneError(
@@ -86,6 +86,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
             f"with {scene.noise.title} and g = {scene.observable!r}; use order={known} or "
             "method='monte_carlo'"
         )
+    constants, errors = _constants(scene, seed, threads)
     times = p * np.asarray(horizons, dtype=float)
     formula = Formula(constants, known, np.sqrt(p) * lower, np.sqrt(p) * upper)
     if not formula.below < 0 < formula.above:  # e u(start) is beyond a threshold: nothing is known
@@ -104,11 +105,17 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
     return value, error
 
 
+def _highest_order(scene):
+    if not applies(scene):
+        return 1
+    return 3 if scene.is_odd() else 2
+
+
 @lru_cache(maxsize=16)  # the same for every p and interval
 def _constants(scene, seed, threads):
-    """Return the constants of the formula, their errors, and the highest order they suffice for."""
+    """Return the constants of the formula, and their errors."""
     if applies(scene) and scene.is_odd():
-        return *(
+        return tuple(
             Constants(
                 diffusion=c.diffusion,
                 lower=c.length,
@@ -122,21 +129,20 @@ def _constants(scene, seed, threads):
                 third=c.third,
             )
             for c in expansion(scene)
-        ), 3
+        )
     if applies(scene):
-        return *(Constants(**vars(c)) for c in walls(scene)), 2
+        return tuple(Constants(**vars(c)) for c in walls(scene))
     if milne_plane.applies(scene):
-        return *(
+        return tuple(
             Constants(c.diffusion, c.length, c.length, c.poisson)
             for c in milne_plane.leading(scene)
-        ), 1
+        )
     length = sampled_length(scene, seed=labelled(seed, "length"), threads=threads)
     gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
     start = sampled_poisson(scene, labelled(seed, "start"), threads)
     return (
         Constants(gamma2.value / 2, length.value, length.value, start.value),
         Constants(gamma2.error / 2, length.error, length.error, start.error),
-        1,
     )
 
 

@@ -92,7 +92,7 @@ def spectral_crossing(scene, lower, upper, times, tol):
         if first_passage_march.applies(problem, times):
             problem = first_passage_march.March(scene, lower, upper)
             try:
-                return _refined(problem, times, tol, partial(problem.solve, times))
+                return _refined(problem, times, tol, partial(_marched, problem, times))
             except UnstableError:  # slabs are not
                 problem = first_passage_plane.Plane(scene, lower, upper)
     else:
@@ -225,22 +225,32 @@ def _from_afar(scene, lower, upper, times, tol):
 
 
 def _by_contours(problem, times):
-    """Return what solves the problem at a level by inverting the transform."""
+    """Return what solves the problem at a level by inverting the transform, as `_refined` asks."""
     return partial(_solve, problem, times, _saddles(problem, times))
 
 
+def _marched(problem, times, level, _known, _wanted):
+    return problem.solve(times, *level), np.full(len(times), True)
+
+
 def _refined(problem, times, tol, solve):
-    """Refine what `solve` returns at the problem's levels until two agree."""
+    """Refine until two levels agree.
+
+    `solve` takes a level, what is known, and the times at which more is wanted; it returns what is
+    known then and where it has been solved anew.
+    """
     worst = np.inf
     first = 0 if tol >= problem.loose else 1
-    found = solve(*problem.levels[first])
+    wanted, change = np.full(len(times), True), 0.0
+    found, _ = solve(problem.levels[first], np.zeros((2, len(times))), wanted)
     odd = problem.scene.is_odd()
     for level in problem.levels[first + 1 :]:
-        coarse, found = found, solve(*level)
+        coarse, (found, solved) = found, solve(level, found, wanted)
         solution = np.clip(found, 0.0, 1.0)
         # not clipped before: two contours that both fail would agree on 0 or 1
-        error = _SAFETY[odd] * np.abs(found - coarse) + np.abs(found - solution)
-        error = _largest_nearby(error, solution if problem.relative else 1 + 0 * error, times)
+        new = _SAFETY[odd] * np.abs(found - coarse) + np.abs(found - solution)
+        change = np.where(solved, new, change)
+        error = _largest_nearby(change, solution if problem.relative else 1 + 0 * change, times)
         error += problem.inexact * solution + _UNDERFLOW
         error += _ROUNDING[odd] * problem.scene.damping * times * solution[0] * solution[1]
         error[0] = np.where(solution[0] == 0, np.maximum(problem.negligible, error[0]), error[0])
@@ -257,6 +267,7 @@ def _refined(problem, times, tol, solve):
         if not error.max() < worst:  # rounding: finer grids do not help
             break
         worst = error.max()
+        wanted = np.any(error > tol, axis=0)
     raise ToleranceError(
         f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
         f"{problem.cure}"
@@ -366,11 +377,12 @@ def _windows(first, end, *growing):
         first = int(last)
 
 
-def _solve(problem, times, saddles, resolution, count, spacing):
-    """Probability and survival probability, shape (2, k)."""
+def _solve(problem, times, saddles, level, known, wanted):
+    """Probability and survival probability, shape (2, k), anew in windows with a wanted time."""
+    resolution, count, spacing = level
     begins = np.searchsorted(saddles.bound, np.log(problem.negligible))
     rises = max(begins, np.max(np.flatnonzero(saddles.rising) + 1, initial=0))
-    found = np.zeros((2, len(times)))
+    found, solved = known.copy(), np.full(len(times), False)
 
     def transform(where):
         return problem.transform(resolution, times[where], -saddles.bound[where][0])
@@ -381,31 +393,40 @@ def _solve(problem, times, saddles, resolution, count, spacing):
         nodes = round(count + _PER_DECADE * np.log10(end / begin))
         return hyperbola(begin, end, nodes, _SECTOR, first)
 
+    def store(here, values, of_survival=False):
+        found[int(of_survival), here], found[1 - int(of_survival), here] = values, 1 - values
+        solved[here] = True
+
     rise = [
         (here, transform(here))
         for here in _windows(
             begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)
         )
+        if wanted[here].any()
     ]
+    negligible = begins
     for here, of_rise in reversed(rise):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
         tilt = np.min(saddles.tilt[here])
         contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
-        found[0, here] = _probability(of_rise, contour, times[here], problem.last)
+        store(here, _probability(of_rise, contour, times[here], problem.last))
         # the probability increases: earlier ones are negligible, too, and the bound was too weak
         if problem.relative and abs(found[0, here.start]) < _SURELY * problem.negligible:
+            negligible = here.start
             break
+    store(slice(negligible), np.zeros(negligible))
     for here in _windows(rises, len(times), (times, _WINDOW)):
-        contour = around_poles(here)
-        found[0, here] = _probability(transform(here), contour, times[here], problem.last)
-    found[1] = 1 - found[0]
+        if wanted[here].any():
+            contour = around_poles(here)
+            store(here, _probability(transform(here), contour, times[here], problem.last))
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
-    if late < len(times) and problem.relative and problem.two_sided:
+    if wanted[late:].any() and problem.relative and problem.two_sided:
         pole = _leading_pole(transform(slice(late, None)), times[late])
         for here in _windows(late, len(times), (times, _WINDOW)):
-            found[1, here] = _survival(transform(here), around_poles(here, pole), times[here])
-            found[0, here] = 1 - found[1, here]
-    return found
+            if wanted[here].any():
+                values = _survival(transform(here), around_poles(here, pole), times[here])
+                store(here, values, of_survival=True)
+    return found, solved
 
 
 def _probability(transform, contour, times, last):
