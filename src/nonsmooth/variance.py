@@ -33,6 +33,8 @@ _EXACT = {1: 1e-10, 2: 1e-6, 3: 2e-4, 4: 3e-3}  # tolerances by the number of st
 _VARIANCE = {1: 1e-9, 2: 1e-5}  # absolute, of v(tau)/tau
 _SAMPLED, _LEAST_SAMPLED = 1e-2, 1e-3  # tolerances of Monte Carlo: unless given, and the least
 _HALVING_SHARE, _BIAS_SHARE = 0.4, 0.12  # of the tolerance: error of the bias, and the bias
+_RESTING = 0.2  # relative standard error of a variance that rests on 1 / 0.2^2 paths at least
+_MORE = 6.0  # square root of the factor by which paths are added where it rests on fewer
 _ATTEMPTS = 5
 _FEW_STEPS = 5e7  # of all paths together, faster than grids for two variables
 # tolerances from which Monte Carlo is faster than grids, as measured by benchmarks/requests.py
@@ -357,11 +359,13 @@ def _sampled_moments(scene, times, tol, seed, threads, most=MOST_STEPS):
             for part in ("error", "bias", "bias_error")
         )
         error = np.max(bias + SIGMAS * np.hypot(own, spread))
-        if error <= tol:
+        size = max(float(run["variance"][-1]) / times[-1], np.finfo(float).tiny)
+        rare = own[-1] / size / _RESTING
+        if error <= tol and rare <= 1:
             break
         # an eighth of the paths measures the bias of the step
         deviation = math.sqrt(paths) * np.max(own)
-        paths = max(paths, paths_for(deviation, tol))
+        paths = max(paths, paths_for(deviation, tol), math.ceil(paths * min(rare, _MORE) ** 2))
         step = refined_step(step, np.max(bias + spread), _BIAS_SHARE * tol, order)
         require_possible(
             paths,
@@ -370,6 +374,11 @@ def _sampled_moments(scene, times, tol, seed, threads, most=MOST_STEPS):
             f"an error of {error:.1g}",
             tol,
             most,
+        )
+    if rare > 1:
+        raise ToleranceError(
+            f"v(tau)/tau = {size:.3g} at tau = {times[-1]:g} rests on the few of {paths} paths "
+            "that have moved; choose a longer time"
         )
     mean, uncertain = stationary_mean(scene, labelled(seed, "stationary"), threads)
     w = run["mean"].values - mean * times
