@@ -139,7 +139,7 @@ class TestSmallScales:
                 scene, threshold, np.geomspace(1e-3, 1e3, 200), p, **formula
             ).probability.values
             assert np.all((value >= 0) & (value <= 1))
-            assert np.all(np.diff(value) >= -1e-14)
+            assert np.all(np.diff(value) >= -1e-13)  # rounding of means over 80 clocks
 
     def test_far_below_its_range(self):
         """Nothing is claimed at p = 1e-3; and a tolerance stops it, with the best value."""
