@@ -463,7 +463,7 @@ CASES = [
         "double well, barrier $8 kT$",
         "asymptotic_variance",
         _growth(_wells, tol=1e-2),
-        _other(_growth(_wells, tol=1e-5)),
+        _other(_growth(_wells, tol=1e-4)),
     ),
     Case(
         "double well, barrier $8 kT$",
