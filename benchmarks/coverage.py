@@ -9,8 +9,8 @@ import pandas as pd
 from scipy import stats
 
 import nonsmooth as ns
-from nonsmooth.crossing import first_passage_counts, proportion
 from nonsmooth.growth import growth, integrals
+from nonsmooth.sampled_crossing import first_passage_counts, proportion
 from nonsmooth.trajectories import gram, moments
 
 FRICTION = ns.Scene("friction", n=100)

@@ -6,7 +6,7 @@
 import numpy as np
 
 import nonsmooth as ns
-from nonsmooth.crossing import first_passage_counts
+from nonsmooth.sampled_crossing import first_passage_counts
 from nonsmooth.trajectories import gram, moments
 
 SCENE, PATHS = ns.Scene("friction", n=100), 200_000

@@ -24,10 +24,10 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth import corrected, far_start, quadrature, refinement, spectral, transient
-from nonsmooth.crossing import first_passage_counts
+from nonsmooth import corrected, quadrature, refinement, spectral, tail_transport, transient
 from nonsmooth.errors import NonsmoothError, ToleranceError
 from nonsmooth.growth import growth, integrals
+from nonsmooth.sampled_crossing import first_passage_counts
 from nonsmooth.spectral_gap import _on as spectral_gap_on
 from nonsmooth.trajectories import SIGMAS, coarse_step, coupled, gram, moments
 
@@ -610,7 +610,7 @@ QUANTITIES = {
 
 def empty_caches():
     """Forget what has been computed of scenes; compiled formulas stay."""
-    for kept in (quadrature._solved, corrected._constants, far_start.march):
+    for kept in (quadrature._solved, corrected._constants, tail_transport.march):
         kept.cache_clear()
 
 

@@ -16,9 +16,9 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.crossing import first_passage_counts
 from nonsmooth.kernels import kernel
 from nonsmooth.panel import new_panel
+from nonsmooth.sampled_crossing import first_passage_counts
 from nonsmooth.streams import BLOCK, normals
 from nonsmooth.trajectories import gram
 

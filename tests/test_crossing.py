@@ -5,8 +5,8 @@ import pytest
 from scipy import special, stats
 
 import nonsmooth as ns
-from nonsmooth.crossing import first_passage_counts, first_passage_shift, proportion
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.sampled_crossing import first_passage_counts, first_passage_shift, proportion
 from nonsmooth.streams import BLOCK
 from nonsmooth.thresholds import bounds
 from nonsmooth.trajectories import coupled, step_bias

@@ -6,9 +6,9 @@ from scipy.linalg import expm
 from scipy.special import ndtr
 
 import nonsmooth as ns
-from nonsmooth import far_start
-from nonsmooth.far_start import Law, March, radau, tail
+from nonsmooth.far_start import Law, tail
 from nonsmooth.ordinates import ordinates
+from nonsmooth.tail_transport import March, radau, reach
 from nonsmooth.transport import first_passage, waves
 
 
@@ -116,8 +116,8 @@ def test_the_longest_way():
     """Friction alone stops y: int y <= sup over the way down, by Chernoff above the mean way."""
     out = tail(far(10.0))
     fall = np.log(11.0 / (1 + out.level))
-    assert 10.0 - out.level - fall < out.reach < 40.0
-    assert far_start.tail(far(-10.0, observable="y + abs(y)")).reach == 0.0
+    assert 10.0 - out.level - fall < reach(out) < 40.0
+    assert reach(tail(far(-10.0, observable="y + abs(y)"))) == 0.0
 
 
 def test_g_that_vanishes_in_the_tail():

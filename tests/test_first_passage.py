@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import erfc
 
 import nonsmooth as ns
-from nonsmooth import first_passage as first_passage_module
+from nonsmooth import first_passage_inversion as inversion
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.half_space import walls
 from nonsmooth.laplace import hyperbola
@@ -278,14 +278,14 @@ class TestSpectral:
     def test_contours_end_where_crossings_are_negligible(self, monkeypatch):
         """Earlier times get none, though without a good bound: at most one at each level."""
         begins = []
-        probability = first_passage_module._probability
+        probability = inversion._probability
 
         def recorded(*problem):
             found = probability(*problem)
             begins.append(abs(found[0]))
             return found
 
-        monkeypatch.setattr(first_passage_module, "_probability", recorded)
+        monkeypatch.setattr(inversion, "_probability", recorded)
         times = [0.01, 0.1, 0.3, 1.0, 5.0, 10.0, 20.0]
         found = exact(0.6, times, 0.01, SKEWED, tol=1e-3)  # by two levels
         assert np.sum(np.array(begins) < 1e-15) <= 2

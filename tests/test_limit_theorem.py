@@ -5,7 +5,6 @@ import pytest
 from scipy import stats
 
 import nonsmooth as ns
-from nonsmooth.crossing import first_passage_counts
 from nonsmooth.limit_theorem import (
     allowed_distance,
     distance_to_limit,
@@ -16,6 +15,7 @@ from nonsmooth.limit_theorem import (
     sampling_bound,
     scaled_integrals,
 )
+from nonsmooth.sampled_crossing import first_passage_counts
 
 SCENE = ns.Scene("friction", n=100)
 GAMMA2 = 0.137696412899501

@@ -11,11 +11,11 @@ from scipy.special import ndtr, ndtri
 
 from nonsmooth import errata
 from nonsmooth.brownian import brownian_crossing
-from nonsmooth.crossing import crossing_estimate
 from nonsmooth.drift_condition import margins
 from nonsmooth.ergodicity import Bound
 from nonsmooth.errors import CheckError
 from nonsmooth.estimate import Estimate
+from nonsmooth.sampled_crossing import crossing_estimate
 from nonsmooth.scene import Scene
 
 TAU = np.array([0.1, 1.0, 10.0])

@@ -3,9 +3,9 @@
 from functools import partial
 
 from nonsmooth import artifact, schemes
-from nonsmooth.crossing import first_passage_shift
 from nonsmooth.errors import SceneError
 from nonsmooth.jobs import produce
+from nonsmooth.sampled_crossing import first_passage_shift
 from nonsmooth.scene import Scene
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from nonsmooth import artifact
-from nonsmooth.crossing import DESCRIPTIONS, crossing_estimate
 from nonsmooth.jobs import produce
+from nonsmooth.sampled_crossing import DESCRIPTIONS, crossing_estimate
 
 
 def merge(shards, halving, p):

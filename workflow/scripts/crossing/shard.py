@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 
 from nonsmooth import artifact
-from nonsmooth.crossing import first_passage_counts
 from nonsmooth.jobs import produce
+from nonsmooth.sampled_crossing import first_passage_counts
 from nonsmooth.scene import Scene
 
 

@@ -4,9 +4,9 @@ import numpy as np
 from scipy.special import ndtri
 
 from nonsmooth import artifact
-from nonsmooth.crossing import proportion
 from nonsmooth.errors import CheckError
 from nonsmooth.jobs import produce
+from nonsmooth.sampled_crossing import proportion
 from nonsmooth.tables import sorted_by
 
 OUTSIDE = 1e-6  # probability that a simultaneous band misses its curve by chance

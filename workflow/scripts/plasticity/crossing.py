@@ -5,9 +5,10 @@ from functools import partial
 import numpy as np
 
 from nonsmooth import artifact
-from nonsmooth.crossing import DESCRIPTIONS, crossing_probability
+from nonsmooth.crossing import crossing_probability
 from nonsmooth.jobs import produce
 from nonsmooth.plasticity import yielding_oscillator
+from nonsmooth.sampled_crossing import DESCRIPTIONS
 
 
 def crossing(ground, oscillator, limit, duration, outputs, step, paths, seed, threads):

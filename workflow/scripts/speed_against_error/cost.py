@@ -5,8 +5,9 @@ import os
 import numpy as np
 
 from nonsmooth import finite_difference, spectral
-from nonsmooth.crossing import crossing_probability, first_passage_counts
+from nonsmooth.crossing import crossing_probability
 from nonsmooth.jobs import produce
+from nonsmooth.sampled_crossing import first_passage_counts
 from nonsmooth.scene import Scene
 from nonsmooth.trajectories import gram
 from nonsmooth.variance import asymptotic_variance

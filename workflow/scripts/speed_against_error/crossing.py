@@ -5,10 +5,11 @@ from itertools import product
 import numpy as np
 from scipy.special import binom
 
-from nonsmooth.crossing import crossing_probability, first_passage_counts
+from nonsmooth.crossing import crossing_probability
 from nonsmooth.jobs import produce
 from nonsmooth.laplace import hyperbola
 from nonsmooth.ordinates import ordinates
+from nonsmooth.sampled_crossing import first_passage_counts
 from nonsmooth.scene import Scene
 from nonsmooth.streams import labelled
 from nonsmooth.transport import first_passage

@@ -5,13 +5,13 @@ from functools import partial
 import numpy as np
 
 from nonsmooth import artifact
-from nonsmooth.crossing import (
+from nonsmooth.jobs import produce
+from nonsmooth.sampled_crossing import (
     DESCRIPTIONS,
     crossing_estimate,
     first_passage_bias,
     first_passage_counts,
 )
-from nonsmooth.jobs import produce
 from nonsmooth.scene import Scene
 
 
