@@ -278,14 +278,14 @@ class TestSpectral:
     def test_contours_end_where_crossings_are_negligible(self, monkeypatch):
         """Earlier times get none, though without a good bound: at most one at each level."""
         begins = []
-        probability = inversion._probability
+        inverted = inversion._inverted
 
-        def recorded(*problem):
-            found = probability(*problem)
+        def recorded(*contour):
+            found = inverted(*contour)
             begins.append(abs(found[0]))
             return found
 
-        monkeypatch.setattr(inversion, "_probability", recorded)
+        monkeypatch.setattr(inversion, "_inverted", recorded)
         times = [0.01, 0.1, 0.3, 1.0, 5.0, 10.0, 20.0]
         found = exact(0.6, times, 0.01, SKEWED, tol=1e-3)  # by two levels
         assert np.sum(np.array(begins) < 1e-15) <= 2

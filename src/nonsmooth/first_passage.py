@@ -135,7 +135,8 @@ def _refined(problem, times, tol, solve):
     worst = np.inf
     first = 0 if tol >= problem.loose else 1
     wanted, change = np.full(len(times), True), 0.0
-    found, _ = solve(problem.levels[first], np.zeros((2, len(times))), wanted)
+    nothing = np.array([np.zeros(len(times)), np.ones(len(times))])
+    found, _ = solve(problem.levels[first], nothing, wanted)
     odd = problem.scene.is_odd()
     for level in problem.levels[first + 1 :]:
         coarse, (found, solved) = found, solve(level, found, wanted)

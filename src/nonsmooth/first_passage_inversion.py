@@ -14,21 +14,28 @@ from scipy.optimize import root_scalar
 
 from nonsmooth.laplace import hyperbola, through_saddle
 
-_PER_DECADE = 12  # nodes more for each decade of times
-_SECTOR = 0.6  # half angle about the negative axis, of the poles and of what grows there
-# last time over first time, of a contour, at most and at least; the rise of the probability in one,
-# until it has risen
-_WINDOW, _SHORTEST, _GROWTH = 20.0, 3.0, 1e4
-_RISEN = 0.05  # bound of the probability at the end of the rise
+_PER_DECADE = 8  # nodes more for each decade of times
+_SHORTEST = 3.0  # last time over first time, of a hyperbola, at least
+_GROWTH = 1e4  # of the probability, at most, for a contour through a saddle
 # Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of
 # a contour have such an angle to the left of the vertical that the growth takes at most some share
-# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, at the
-# last angle, for |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is
-# where exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
+# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, for
+# |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is where
+# exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
-_TAME, _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 0.08, 6.0, 0.3, 30.0, 0.7
-_MOST = 80  # terms of a contour through a saddle
+_FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 6.0, 0.3, 30.0, 0.7
+# Hyperbolas: half angle about the negative axis, of the poles and of what grows there; last time
+# over first time; nodes more; bound of the probability, number of angles at which the transform
+# has to be tame, and the share, all at the time divided by a factor. What poles off the axis add
+# has decayed after three times the rise.
+_SECTORS = (
+    (1.1, 2.5, 5, (1e-4, 2, 0.25), 1.0),
+    (0.9, 4.0, 6, (0.05, 3, 0.08), 1.0),
+    (0.3, 20.0, 0, (0.05, 3, 0.08), 3.0),
+)
+_ABSOLUTE = 1e-10  # terms left out of a hyperbola, relative to the largest
+_MOST = 100  # terms of a contour
 _SURELY = 0.1  # of what is negligible: two levels below, and their difference, leave it so
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _AXIS = 0.6  # spacing of log z on the axis in the search for saddles
@@ -66,15 +73,15 @@ class _Saddles:
         Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
     tilt : numpy.ndarray, shape (k,)
         Angle to the vertical of the arms of a contour through it.
-    rising : numpy.ndarray of bool, shape (k,)
-        Whether the probability is small or the transform grows too fast for a hyperbola.
+    fits : numpy.ndarray of bool, shape (k, number of sectors)
+        Whether the probability is not small and the transform tame enough for such a hyperbola.
     """
 
     place: np.ndarray
     width: np.ndarray
     bound: np.ndarray
     tilt: np.ndarray
-    rising: np.ndarray
+    fits: np.ndarray
 
 
 def _saddles(problem, times):
@@ -92,23 +99,27 @@ def _saddles(problem, times):
         arms.append([_size(transform, z * np.exp(1j * (np.pi / 2 + arm))) for arm in _ARMS])
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        return _Saddles(nothing, nothing, nothing + np.log(problem.rounded), nothing, nothing > 0)
+        fits = np.full((len(times), len(_SECTORS)), True)
+        return _Saddles(nothing, nothing, nothing + np.log(problem.rounded), nothing, fits)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
     z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
     radii = np.exp(log_z[: len(log_F)])
     growth = np.array(arms)
-    bound, place, width, tilt, rising = [], [], [], [], []
+    bound, place, width, tilt, fits = [], [], [], [], []
 
     def tame(count, share, t, least):
         decay = radii[:, None] * t * np.sin(_ARMS[:count])
         seen = (radii[:, None] > least) & (decay < _NEGLIGIBLY)
         return np.all((growth[:, :count] <= _HARMLESS + share * decay)[seen])
 
+    def hyperbolic(t, risen, count, share):
+        return np.min(z * t + cumulant) >= np.log(risen) and tame(count, share, t, _FAR / t)
+
     for t in times:
         bound.append(np.min(z * t + cumulant))
-        rising.append(bound[-1] < np.log(_RISEN) or not tame(len(_ARMS), _TAME, t, _FAR / t))
+        fits.append([hyperbolic(t / factor, *least) for *_, least, factor in _SECTORS])
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
         fitting = [k for k in (1, 2) if z[best] < radii[-1] and tame(k, _TAMED, t, z[best])]
@@ -120,7 +131,7 @@ def _saddles(problem, times):
         np.array(width),
         np.maximum.accumulate(bound),
         np.array(tilt),
-        np.array(rising),
+        np.array(fits),
     )
 
 
@@ -140,27 +151,48 @@ def _windows(first, end, *growing):
         first = int(last)
 
 
+def _hyperbolic(times, fits, begins, end):
+    """Windows after the rise and before `end`, with sector and number of nodes more."""
+    fitting = [np.max(np.flatnonzero(~fit) + 1, initial=begins) for fit in fits.T]
+    first = min(fitting)
+    while first < end:
+        best = max(k for k, since in enumerate(fitting) if since <= first)
+        sector, ratio, more, *_ = _SECTORS[best]
+        last = int(np.searchsorted(times, times[first] * ratio, "right"))
+        yield slice(first, min(end, last)), sector, more
+        first = last
+
+
 def _solve(problem, times, saddles, level, known, wanted):
     resolution, count, spacing = level
     begins = np.searchsorted(saddles.bound, np.log(problem.negligible))
-    rises = max(begins, np.max(np.flatnonzero(saddles.rising) + 1, initial=0))
     found, solved = known.copy(), np.full(len(times), False)
 
     def transform(where):
         return problem.transform(resolution, times[where], -saddles.bound[where][0])
 
-    def around_poles(where, first=0.0):
+    def of_probability(transform):
+        return lambda z: transform(z) / z
+
+    def of_survival(transform):
+        return lambda z: (1 - transform(z)) / z
+
+    def around_poles(where, sector, more, first=0.0):
         """Contour to the right of the poles, of which `first` is the largest."""
         begin, end = times[where][0], max(times[where][-1], _SHORTEST * times[where][0])
-        nodes = round(count + _PER_DECADE * np.log10(end / begin))
-        return hyperbola(begin, end, nodes, _SECTOR, first)
+        nodes = round(count + more + _PER_DECADE * np.log10(end / begin))
+        return hyperbola(begin, end, nodes, sector, first)
 
-    def store(here, values, of_survival=False):
-        found[int(of_survival), here], found[1 - int(of_survival), here] = values, 1 - values
+    def store(here, values, row=0):
+        found[row, here], found[1 - row, here] = values, 1 - values
         solved[here] = True
 
+    tails = problem.relative and problem.two_sided
+    late = begins + np.searchsorted(-known[1, begins:], -_SMALL) if tails else len(times)
+    risen = list(_hyperbolic(times, saddles.fits, begins, late))
+    rises = risen[0][0].start if risen else late
     rise = [
-        (here, transform(here))
+        (here, of_probability(transform(here)))
         for here in _windows(
             begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)
         )
@@ -171,40 +203,40 @@ def _solve(problem, times, saddles, level, known, wanted):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
         tilt = np.min(saddles.tilt[here])
         contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
-        store(here, _probability(of_rise, contour, times[here], problem.last))
+        store(here, _inverted(of_rise, contour, times[here], problem.last))
         # the probability increases: earlier ones are negligible, too, and the bound was too weak
         if problem.relative and abs(found[0, here.start]) < _SURELY * problem.negligible:
             negligible = here.start
             break
     store(slice(negligible), np.zeros(negligible))
-    for here in _windows(rises, len(times), (times, _WINDOW)):
+    for here, sector, more in risen:
         if wanted[here].any():
-            contour = around_poles(here)
-            store(here, _probability(transform(here), contour, times[here], problem.last))
+            contour = around_poles(here, sector, more)
+            integrand = of_probability(transform(here))
+            store(here, _inverted(integrand, contour, times[here], _ABSOLUTE))
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
-    if wanted[late:].any() and problem.relative and problem.two_sided:
+    if tails and wanted[late:].any():
         pole = _leading_pole(transform(slice(late, None)), times[late])
-        for here in _windows(late, len(times), (times, _WINDOW)):
+        sector, ratio, more, *_ = _SECTORS[-1]
+        for here in _windows(late, len(times), (times, ratio)):
             if wanted[here].any():
-                values = _survival(transform(here), around_poles(here, pole), times[here])
-                store(here, values, of_survival=True)
+                contour = around_poles(here, sector, more, pole)
+                integrand = of_survival(transform(here))
+                store(here, _inverted(integrand, contour, times[here], _ABSOLUTE), 1)
     return found, solved
 
 
-def _probability(transform, contour, times, last):
+def _inverted(transform, contour, times, last):
+    """Sum until the terms at the first time, where they are largest, are negligible."""
     values = []
     for z, weight in zip(contour.nodes, contour.weights, strict=True):
-        values.append(transform(z) / z)
+        values.append(transform(z))
         term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
         if len(values) == 1:
             largest = term
         elif term < last * largest or len(values) == _MOST:
             break
     return contour.until(len(values)).invert(np.array(values), times)
-
-
-def _survival(transform, contour, times):
-    return contour.invert(np.array([(1 - transform(z)) / z for z in contour.nodes]), times)
 
 
 def _leading_pole(transform, time):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+_SPARE = 3  # times the nodes, where F grows off the axis
 _FARTHEST = 7.0  # parameter of its last node, exp(7) / 2 saddles away
 
 
@@ -53,7 +54,7 @@ def hyperbola(first, last, count, sector=0.0, pole=0.0):
     ----------
     first, last : float
     count : int
-        Number of nodes in the upper half plane.
+        Number of nodes in the upper half plane that times between would need, were F constant.
     sector : float
         F is analytic where |arg(pole - z)| > sector.
     pole : float
@@ -62,6 +63,7 @@ def hyperbola(first, last, count, sector=0.0, pole=0.0):
     Returns
     -------
     Contour
+        Of more nodes than needed, from the axis on: stop where the terms are negligible.
     """
     ratio = last / first
 
@@ -79,7 +81,7 @@ def hyperbola(first, last, count, sector=0.0, pole=0.0):
     a = minimize_scalar(slowness, bounds=(least + margin, most - margin), method="bounded").x
     step = reach(a) / count
     mu = (4 * np.pi * a - np.pi**2 + 2 * np.pi * sector) / reach(a) * count / last
-    u = (np.arange(count) + 0.5) * step
+    u = (np.arange(_SPARE * count) + 0.5) * step
     nodes = pole + mu * (1 + np.sin(1j * u - a))
     return Contour(nodes, mu * step / np.pi * 1j * np.cos(1j * u - a))
 

@@ -1,0 +1,113 @@
+"""Whether the stated errors of spectral crossing probabilities are larger than the true ones.
+
+`python -m benchmarks.crossing_honesty [classes]` draws random scenes with the state y and white
+noise and random intervals, and compares three times of a curve with the Laplace transform inverted
+on a vertical line, where it does not grow, on a grid of higher degree. It prints one line per class
+of observables.
+"""
+
+import sys
+import time
+import warnings
+
+import numpy as np
+import pandas as pd
+
+import nonsmooth as ns
+from nonsmooth import spectral
+from nonsmooth.errors import ToleranceError
+from nonsmooth.first_passage_line import Line
+
+ODD = ("y", "y + {a}*sin(2*y)", "y*(1 + {a}*y**2/(1 + y**2))", "sign(y)*y**2/(1 + abs(y))")
+OTHER = ("y + {a}*abs(y)", "y + {a}*sin(y)**2", "y + {a}*cos(2*y)", "y + {a}*y**2/(1 + y**2)")
+CLASSES = {"odd": (ODD, 40), "other": (OTHER, 24)}
+HORIZONS = np.geomspace(0.01, 100, 25)
+PROBED = (1e-4, 0.05, 0.7)  # probabilities near which a curve is checked
+DEGREE, PERIOD, DECAY, LEAST, MOST = 11, 3.0, 24.0, 1e-13, 1500  # of the reference
+UNCERTAIN = 2e-10  # its error: exp(-DECAY) of periods, rounding and what is left out times exp(8)
+
+
+def draw(rng, formulas):
+    """Draw a scene, an interval and p."""
+    g = formulas[rng.integers(len(formulas))].format(a=round(rng.uniform(0.1, 0.6), 3))
+    n = np.inf if rng.random() < 1 / 8 else 10 ** rng.uniform(0, 5)
+    start = {"y": rng.uniform(-1, 1)} if rng.random() < 0.3 else {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        scene = ns.Scene("friction", n=n, damping=10 ** rng.uniform(-1, 1), observable=g)
+        mean = spectral.mean(scene)
+        scene = ns.Scene(
+            "friction", n=n, damping=scene.damping, observable=f"{g} - {mean:.16g}", start=start
+        )
+    b = 10 ** rng.uniform(-1, 0.7)
+    threshold = [(-b, b), (-b, b * rng.uniform(0.5, 2)), (-np.inf, b)][rng.integers(3)]
+    return scene, threshold, 10 ** rng.uniform(-1, 3)
+
+
+def on_vertical_line(scene, levels, time):
+    """Probability at a time by the trapezoidal rule; nan if it takes too many nodes."""
+    transform = Line(scene, *levels).transform(DEGREE, np.array([time]), 12.0)
+    step = 2 * np.pi / (PERIOD * time)
+    z = DECAY / (PERIOD * time) + 1j * step * (np.arange(MOST) + 0.5)
+    values = []
+    for node in z:
+        values.append(transform(node) / node)
+        if abs(values[-1]) < LEAST * abs(values[0]):
+            break
+    else:
+        return np.nan
+    return step / np.pi * (np.exp(time * z[: len(values)]) @ np.array(values)).real
+
+
+def compare(formulas, seed):
+    """One scene: true and stated errors at the probed times, seconds; None where refused."""
+    scene, threshold, p = draw(np.random.default_rng(seed), formulas)
+    began = time.process_time()
+    try:
+        found = ns.crossing_probability(scene, threshold, HORIZONS, p, method="spectral")
+    except ToleranceError as error:
+        print(f"{seed}: {scene}, {threshold}, p = {p:.3g}: {error}", file=sys.stderr, flush=True)
+        return None
+    seconds = time.process_time() - began
+    levels = np.sqrt(p) * np.array(threshold)
+    rows = []
+    for k in {int(np.argmin(np.abs(found.probability.values - W))) for W in PROBED}:
+        exact = on_vertical_line(scene, levels, p * HORIZONS[k])
+        true = abs(float(found.probability[k]) - exact)
+        rows.append((true, float(found.probability_error[k])))
+        if true > rows[-1][1] + UNCERTAIN:
+            print(
+                f"{seed}: {scene}, {threshold}, p = {p:.6g}, T = {HORIZONS[k]:g}: "
+                f"{float(found.probability[k]):.12g} +- {rows[-1][1]:.1e}, exact {exact:.12g}",
+                file=sys.stderr,
+                flush=True,
+            )
+    return seconds, rows
+
+
+def main(names):
+    """Measure the classes and print the table."""
+    table = {}
+    for name, (formulas, count) in CLASSES.items():
+        if names and name not in names:
+            continue
+        results = [compare(formulas, seed) for seed in range(count)]
+        done = [r for r in results if r is not None]
+        errors = np.array([row for _, rows in done for row in rows])
+        true, stated = errors[np.isfinite(errors[:, 0])].T
+        seconds = np.array([r[0] for r in done])
+        table[name] = {
+            "scenes": count,
+            "refused": count - len(done),
+            "probabilities checked": len(true),
+            "wrong": int(np.sum(true > stated + UNCERTAIN)),
+            "true/stated: median": np.median(true / (stated + UNCERTAIN)),
+            "largest": np.max(true / (stated + UNCERTAIN)),
+            "seconds: median": np.median(seconds),
+            "longest": seconds.max(),
+        }
+    print(pd.DataFrame(table).T.to_string(float_format="{:.2g}".format))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
