@@ -18,7 +18,7 @@ from nonsmooth import spectral
 from nonsmooth.errors import ToleranceError
 from nonsmooth.first_passage_line import Line
 
-ODD = ("y", "y + {a}*sin(2*y)", "y*(1 + {a}*y**2/(1 + y**2))", "sign(y)*y**2/(1 + abs(y))")
+ODD = ("y", "y + {a}*sin(2*y)", "y*(1 + {a}*y**2/(1 + y**2))", "y + {a}*y**3/(1 + y**2)")
 OTHER = ("y + {a}*abs(y)", "y + {a}*sin(y)**2", "y + {a}*cos(2*y)", "y + {a}*y**2/(1 + y**2)")
 CLASSES = {"odd": (ODD, 40), "other": (OTHER, 24)}
 HORIZONS = np.geomspace(0.01, 100, 25)
@@ -35,10 +35,8 @@ def draw(rng, formulas):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         scene = ns.Scene("friction", n=n, damping=10 ** rng.uniform(-1, 1), observable=g)
-        mean = spectral.mean(scene)
-        scene = ns.Scene(
-            "friction", n=n, damping=scene.damping, observable=f"{g} - {mean:.16g}", start=start
-        )
+        centre = "" if scene.is_odd() else f" - {spectral.mean(scene):.16g}"
+        scene = ns.Scene("friction", n=n, damping=scene.damping, observable=g + centre, start=start)
     b = 10 ** rng.uniform(-1, 0.7)
     threshold = [(-b, b), (-b, b * rng.uniform(0.5, 2)), (-np.inf, b)][rng.integers(3)]
     return scene, threshold, 10 ** rng.uniform(-1, 3)

@@ -38,7 +38,9 @@ class Line:
     cure = "loosen tol"
     # what is taken as 0: probabilities, and values of the transform
     negligible, rounded = 1e-14, 1e-70
-    inexact = 1e-13  # what no refinement shows, relative
+    # what no refinement shows, relative: of mirror images, modes come in squares, and fast ones
+    # lose half of their digits
+    inexact = 2e-9
     # last time over first time of a contour while the probability rises, and terms left out there
     narrow, last = 2.5, 1e-12
 

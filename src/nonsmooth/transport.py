@@ -13,7 +13,7 @@ import numpy as np
 from nonsmooth.poisson import EVEN, ODD
 
 _ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
-_SEPARATED, _POWERS = 1e3, 6  # slow eigenvalue over the others; steps until it is exact
+_SEPARATED, _POWERS = 30.0, 12  # slow eigenvalue over the others; steps until it is exact
 _DIRECTED = 0.1  # flux of a wave that only one wall sends, relative to the largest possible
 
 
