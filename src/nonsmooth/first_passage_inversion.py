@@ -25,16 +25,14 @@ _GROWTH = 1e4  # of the probability, at most, for a contour through a saddle
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
 _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 6.0, 0.3, 30.0, 0.7
-# Hyperbolas: half angle about the negative axis, of the poles and of what grows there; last time
-# over first time; nodes more; bound of the probability, number of angles at which the transform
-# has to be tame, and the share, all at the time divided by a factor. What poles off the axis add
-# has decayed after three times the rise.
+_RISEN, _TAME = 0.05, 0.08  # bound of the probability, and share, from which on hyperbolas serve
+# of which these are half the angle about the negative axis, of the poles and of what grows there;
+# last time over first time; nodes more; factor by which times have to be later. What poles off the
+# axis add has decayed after three times the rise.
 _SECTORS = (
-    (1.1, 2.5, 5, (1e-4, 2, 0.25), 1.0),
-    (0.9, 4.0, 6, (0.05, 3, 0.08), 1.0),
-    (0.3, 20.0, 0, (0.05, 3, 0.08), 3.0),
+    (0.9, 4.0, 6, 1.0),
+    (0.3, 20.0, 0, 3.0),
 )
-_ABSOLUTE = 1e-10  # terms left out of a hyperbola, relative to the largest
 _MOST = 100  # terms of a contour
 _SURELY = 0.1  # of what is negligible: two levels below, and their difference, leave it so
 _SMALL = 1e-3  # survival probabilities below get contours of their own
@@ -114,12 +112,13 @@ def _saddles(problem, times):
         seen = (radii[:, None] > least) & (decay < _NEGLIGIBLY)
         return np.all((growth[:, :count] <= _HARMLESS + share * decay)[seen])
 
-    def hyperbolic(t, risen, count, share):
-        return np.min(z * t + cumulant) >= np.log(risen) and tame(count, share, t, _FAR / t)
+    def hyperbolic(t):
+        risen = np.min(z * t + cumulant) >= np.log(_RISEN)
+        return risen and tame(len(_ARMS), _TAME, t, _FAR / t)
 
     for t in times:
         bound.append(np.min(z * t + cumulant))
-        fits.append([hyperbolic(t / factor, *least) for *_, least, factor in _SECTORS])
+        fits.append([hyperbolic(t / factor) for *_, factor in _SECTORS])
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
         fitting = [k for k in (1, 2) if z[best] < radii[-1] and tame(k, _TAMED, t, z[best])]
@@ -191,18 +190,20 @@ def _solve(problem, times, saddles, level, known, wanted):
     late = begins + np.searchsorted(-known[1, begins:], -_SMALL) if tails else len(times)
     risen = list(_hyperbolic(times, saddles.fits, begins, late))
     rises = risen[0][0].start if risen else late
+    turns = np.cumsum(np.diff(saddles.tilt, prepend=saddles.tilt[0]) != 0) + 1
     rise = [
         (here, of_probability(transform(here)))
         for here in _windows(
-            begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH)
+            begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH), (turns, 1)
         )
         if wanted[here].any()
     ]
     negligible = begins
     for here, of_rise in reversed(rise):
         last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
-        tilt = np.min(saddles.tilt[here])
-        contour = through_saddle(saddles.place[last], saddles.width[last], spacing, tilt)
+        contour = through_saddle(
+            saddles.place[last], saddles.width[last], spacing, saddles.tilt[last]
+        )
         store(here, _inverted(of_rise, contour, times[here], problem.last))
         # the probability increases: earlier ones are negligible, too, and the bound was too weak
         if problem.relative and abs(found[0, here.start]) < _SURELY * problem.negligible:
@@ -213,7 +214,7 @@ def _solve(problem, times, saddles, level, known, wanted):
         if wanted[here].any():
             contour = around_poles(here, sector, more)
             integrand = of_probability(transform(here))
-            store(here, _inverted(integrand, contour, times[here], _ABSOLUTE))
+            store(here, _inverted(integrand, contour, times[here], problem.least))
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
     if tails and wanted[late:].any():
         pole = _leading_pole(transform(slice(late, None)), times[late])
@@ -222,7 +223,7 @@ def _solve(problem, times, saddles, level, known, wanted):
             if wanted[here].any():
                 contour = around_poles(here, sector, more, pole)
                 integrand = of_survival(transform(here))
-                store(here, _inverted(integrand, contour, times[here], _ABSOLUTE), 1)
+                store(here, _inverted(integrand, contour, times[here], problem.least), 1)
     return found, solved
 
 

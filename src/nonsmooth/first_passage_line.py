@@ -41,8 +41,9 @@ class Line:
     # what no refinement shows, relative: of mirror images, modes come in squares, and fast ones
     # lose half of their digits
     inexact = 2e-9
-    # last time over first time of a contour while the probability rises, and terms left out there
-    narrow, last = 2.5, 1e-12
+    # last time over first time of a contour while the probability rises, terms left out there, and
+    # those left out of a hyperbola
+    narrow, last, least = 2.5, 1e-12, 1e-10
 
     @property
     def two_sided(self):

@@ -43,7 +43,7 @@ class Plane:
     relative = False
     levels = _LEVELS
     negligible, rounded = 2e-5, 1e-13
-    narrow, last = 4.0, 1e-7
+    narrow, last, least = 4.0, 1e-7, 1e-6
     inexact = 1e-5  # flow of the nodes that are taken to stand still
 
     def __init__(self, scene, lower, upper):
