@@ -334,7 +334,7 @@ def one_grid(solve, levels=(0, 1, 2, 3, 4, 5), most=4):
         return solve(request, replace(grid, levels=dict.fromkeys(grid.levels, level)))
 
     def runs(request):
-        if len(request.scene.state) > 1 and "y" in request.scene.state:
+        if 1 < len(request.scene.state) <= most and "y" in request.scene.state:
             for level in levels if math.isfinite(request.scene.n) else ():
                 yield lambda seed, level=level: (on(request, level), "one grid")
 
