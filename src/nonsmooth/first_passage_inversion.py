@@ -7,6 +7,7 @@ relative. A problem is that of `first_passage_line` or of `first_passage_plane`.
 
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -25,19 +26,36 @@ _GROWTH = 1e4  # of the probability, at most, for a contour through a saddle
 _ARMS = (0.2, 0.4, 0.67)
 _STEEPEST = 0.0
 _FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 6.0, 0.3, 30.0, 0.7
-_RISEN, _TAME = 0.05, 0.08  # bound of the probability, and share, from which on hyperbolas serve
-# of which these are half the angle about the negative axis, of the poles and of what grows there;
-# last time over first time; nodes more; factor by which times have to be later. What poles off the
-# axis add has decayed after three times the rise.
-_SECTORS = (
-    (0.9, 4.0, 6, 1.0),
-    (0.3, 20.0, 0, 3.0),
-)
+_RISEN, _TAME = 0.05, 0.08  # bound of the probability, and share, at the end of the rise
 _MOST = 100  # terms of a contour
 _SURELY = 0.1  # of what is negligible: two levels below, and their difference, leave it so
 _SMALL = 1e-3  # survival probabilities below get contours of their own
 _AXIS = 0.6  # spacing of log z on the axis in the search for saddles
 _LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z of the spline
+
+
+class _Hyperbola(NamedTuple):
+    """A kind of hyperbola, for times from `since` times the end of the rise on.
+
+    Attributes
+    ----------
+    sector : float
+        Half angle about the negative axis, of the poles and of what grows there.
+    ratio : float
+        Last time over first time, at most.
+    more : int
+        Nodes more.
+    since : float
+    """
+
+    sector: float
+    ratio: float
+    more: int
+    since: float
+
+
+# what poles off the axis add has decayed after three times the rise
+_EARLY, _STEADY = _Hyperbola(0.9, 4.0, 6, 1.0), _Hyperbola(0.3, 20.0, 0, 3.0)
 
 
 def by_contours(problem, times):
@@ -71,7 +89,7 @@ class _Saddles:
         Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
     tilt : numpy.ndarray, shape (k,)
         Angle to the vertical of the arms of a contour through it.
-    fits : numpy.ndarray of bool, shape (k, number of sectors)
+    early, steady : numpy.ndarray of bool, shape (k,)
         Whether the probability is not small and the transform tame enough for such a hyperbola.
     """
 
@@ -79,7 +97,8 @@ class _Saddles:
     width: np.ndarray
     bound: np.ndarray
     tilt: np.ndarray
-    fits: np.ndarray
+    early: np.ndarray
+    steady: np.ndarray
 
 
 def _saddles(problem, times):
@@ -97,15 +116,15 @@ def _saddles(problem, times):
         arms.append([_size(transform, z * np.exp(1j * (np.pi / 2 + arm))) for arm in _ARMS])
     if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
         nothing = np.zeros(len(times))
-        fits = np.full((len(times), len(_SECTORS)), True)
-        return _Saddles(nothing, nothing, nothing + np.log(problem.rounded), nothing, fits)
+        bound, fits = nothing + np.log(problem.rounded), nothing == 0
+        return _Saddles(nothing, nothing, bound, nothing, fits, fits)
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
     z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
     radii = np.exp(log_z[: len(log_F)])
     growth = np.array(arms)
-    bound, place, width, tilt, fits = [], [], [], [], []
+    bound, place, width, tilt, early, steady = [], [], [], [], [], []
 
     def tame(count, share, t, least):
         decay = radii[:, None] * t * np.sin(_ARMS[:count])
@@ -118,7 +137,8 @@ def _saddles(problem, times):
 
     for t in times:
         bound.append(np.min(z * t + cumulant))
-        fits.append([hyperbolic(t / factor) for *_, factor in _SECTORS])
+        early.append(hyperbolic(t / _EARLY.since))
+        steady.append(hyperbolic(t / _STEADY.since))
         best = np.argmin(z * t + cumulant - fine)
         place.append(z[best])
         fitting = [k for k in (1, 2) if z[best] < radii[-1] and tame(k, _TAMED, t, z[best])]
@@ -130,7 +150,8 @@ def _saddles(problem, times):
         np.array(width),
         np.maximum.accumulate(bound),
         np.array(tilt),
-        np.array(fits),
+        np.array(early),
+        np.array(steady),
     )
 
 
@@ -150,15 +171,16 @@ def _windows(first, end, *growing):
         first = int(last)
 
 
-def _hyperbolic(times, fits, begins, end):
-    """Windows after the rise and before `end`, with sector and number of nodes more."""
-    fitting = [np.max(np.flatnonzero(~fit) + 1, initial=begins) for fit in fits.T]
-    first = min(fitting)
+def _hyperbolic(times, saddles, begins, end):
+    """Windows after the rise and before `end`, with the kind of hyperbola."""
+    first, steady = (
+        np.max(np.flatnonzero(~fits) + 1, initial=begins)
+        for fits in (saddles.early, saddles.steady)
+    )
     while first < end:
-        best = max(k for k, since in enumerate(fitting) if since <= first)
-        sector, ratio, more, *_ = _SECTORS[best]
-        last = int(np.searchsorted(times, times[first] * ratio, "right"))
-        yield slice(first, min(end, last)), sector, more
+        kind = _EARLY if first < steady else _STEADY
+        last = int(np.searchsorted(times, times[first] * kind.ratio, "right"))
+        yield slice(first, min(end, last)), kind
         first = last
 
 
@@ -176,11 +198,11 @@ def _solve(problem, times, saddles, level, known, wanted):
     def of_survival(transform):
         return lambda z: (1 - transform(z)) / z
 
-    def around_poles(where, sector, more, first=0.0):
+    def around_poles(where, kind, first=0.0):
         """Contour to the right of the poles, of which `first` is the largest."""
         begin, end = times[where][0], max(times[where][-1], _SHORTEST * times[where][0])
-        nodes = round(count + more + _PER_DECADE * np.log10(end / begin))
-        return hyperbola(begin, end, nodes, sector, first)
+        nodes = round(count + kind.more + _PER_DECADE * np.log10(end / begin))
+        return hyperbola(begin, end, nodes, kind.sector, first)
 
     def store(here, values, row=0):
         found[row, here], found[1 - row, here] = values, 1 - values
@@ -188,7 +210,7 @@ def _solve(problem, times, saddles, level, known, wanted):
 
     tails = problem.relative and problem.two_sided
     late = begins + np.searchsorted(-known[1, begins:], -_SMALL) if tails else len(times)
-    risen = list(_hyperbolic(times, saddles.fits, begins, late))
+    risen = list(_hyperbolic(times, saddles, begins, late))
     rises = risen[0][0].start if risen else late
     turns = np.cumsum(np.diff(saddles.tilt, prepend=saddles.tilt[0]) != 0) + 1
     rise = [
@@ -210,19 +232,18 @@ def _solve(problem, times, saddles, level, known, wanted):
             negligible = here.start
             break
     store(slice(negligible), np.zeros(negligible))
-    for here, sector, more in risen:
+    for here, kind in risen:
         if wanted[here].any():
-            contour = around_poles(here, sector, more)
             integrand = of_probability(transform(here))
+            contour = around_poles(here, kind)
             store(here, _inverted(integrand, contour, times[here], problem.least))
     late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
     if tails and wanted[late:].any():
         pole = _leading_pole(transform(slice(late, None)), times[late])
-        sector, ratio, more, *_ = _SECTORS[-1]
-        for here in _windows(late, len(times), (times, ratio)):
+        for here in _windows(late, len(times), (times, _STEADY.ratio)):
             if wanted[here].any():
-                contour = around_poles(here, sector, more, pole)
                 integrand = of_survival(transform(here))
+                contour = around_poles(here, _STEADY, pole)
                 store(here, _inverted(integrand, contour, times[here], problem.least), 1)
     return found, solved
 
