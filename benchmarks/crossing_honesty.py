@@ -107,6 +107,7 @@ def main(names):
             "seconds: median": np.median(seconds),
             "longest": seconds.max(),
         }
+        print(name, table[name], file=sys.stderr, flush=True)
     print(pd.DataFrame(table).T.to_string(float_format="{:.2g}".format))
 
 
