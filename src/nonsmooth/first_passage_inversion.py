@@ -55,7 +55,7 @@ class _Hyperbola(NamedTuple):
 
 
 # what poles off the axis add has decayed after three times the rise
-_EARLY, _STEADY = _Hyperbola(0.9, 4.0, 6, 1.0), _Hyperbola(0.3, 20.0, 0, 3.0)
+_EARLY, _STEADY = _Hyperbola(0.9, 4.0, 10, 1.0), _Hyperbola(0.3, 20.0, 3, 3.0)
 
 
 def by_contours(problem, times):
