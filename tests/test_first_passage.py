@@ -29,7 +29,8 @@ class TestContour:
     @pytest.mark.parametrize(("ratio", "count", "rate"), [(1.01, 10, 2.0), (10.0, 24, 0.9)])
     def test_inverts_to_the_declared_rate(self, ratio, count, rate):
         """exp(-sqrt z)/z is the transform of erfc(1/(2 sqrt t)); error exp(-rate count)."""
-        contour, times = hyperbola(1.0, ratio, count), np.linspace(1.0, ratio, 7)
+        contour = hyperbola(1.0, ratio, count).until(count)
+        times = np.linspace(1.0, ratio, 7)
         value = contour.invert(np.exp(-np.sqrt(contour.nodes)) / contour.nodes, times)
         assert np.max(np.abs(value - erfc(0.5 / np.sqrt(times)))) < np.exp(-rate * count)
 
@@ -221,6 +222,31 @@ class TestSpectral:
             whole = exact(threshold, [2.0], 1)
             gap = np.abs(whole.probability - half.probability)
             assert np.all(gap <= whole.probability_error + half.probability_error)
+
+    def test_rounding_of_the_half_grid_is_stated(self, monkeypatch):
+        """Late, where the modes of mirror images lose digits that those of the whole grid keep."""
+        halves = exact((-6.0, 7.0), [40.0, 400.0], 1)
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
+        wholes = exact((-6.0, 7.0), [40.0, 400.0], 1)
+        gap = np.abs(wholes.probability - halves.probability)
+        assert np.all(gap <= wholes.probability_error + halves.probability_error)
+
+    def test_soon_after_the_rise_without_symmetry(self):
+        """Poles off the axis still count; against a vertical line, on which nothing grows.
+
+        Its error, below 1e-9: exp(-24) of periods, rounding of 1e-12 times exp(8) F(8/t), terms
+        below 1e-12 of the largest, which is of order 20.
+        """
+        scene = ns.Scene("friction", observable="y + 0.5*sin(y)**2 - 0.0718281158505784")
+        found = exact(0.6, [0.5, 1.15, 23.0], 1, scene)
+        time, grid = 1.15, ordinates(scene, 9, 1.15, 12.0, 40.0, distances=(0.6, 0.6))
+        step = 2 * np.pi / (3 * time)
+        z, terms = 8 / time + 1j * step / 2, []
+        while not terms or abs(terms[-1]) > 1e-12 * abs(terms[0]):
+            terms.append(np.exp(z * time) * first_passage(grid, z, -0.6, 0.6) / z)
+            z += 1j * step
+        reference = step / np.pi * np.sum(terms).real
+        assert abs(found.probability[1] - reference) <= found.probability_error[1] + 1e-9
 
     def test_reflection(self):
         """-g(-y) crosses the thresholds swapped with the same probability."""

@@ -195,6 +195,7 @@ def radau(stages):
     return nodes, np.einsum("iqj,q,i->ij", values, weight, nodes / 2)
 
 
+@lru_cache(maxsize=16)  # the same for every degree
 def reach(tail):
     """Way int |g| that is exceeded with probability exp(-_OUT_OF_REACH), before the level.
 
