@@ -17,7 +17,7 @@ from nonsmooth.generator import evaluate
 from nonsmooth.models import x, y
 from nonsmooth.poisson import EVEN, ODD, Direct, Split
 
-_MARGIN = 0.15  # of the box, to see whether it matters
+MARGIN = 0.15  # of the box, to see whether it matters
 _SHIFTS = (12.0, 5.0, 30.0, 2.0)  # in the order in which they are likely to be the best
 _FITS = 4
 _ACCURACY = 0.02  # residual of the iteration, relative to the tolerance, to begin with
@@ -193,7 +193,7 @@ def _refined(scene, tol):
     coarse = fitted(scene, math.log(1 / tol) + SPARE, _FITTED[count])
     coarse = raised(coarse, _COARSE[count] - _FITTED[count])
     base, accuracy, residual = _iterated(scene, coarse, tol)
-    larger = growth_rate(scene, replace(coarse, margin=_MARGIN), accuracy)
+    larger = growth_rate(scene, replace(coarse, margin=MARGIN), accuracy)
     directions = _directions(coarse)
 
     def grid(index):

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg
 
-from nonsmooth import mesh, refinement
+from nonsmooth import ladder, mesh, refinement
 from nonsmooth.errors import ToleranceError
 from nonsmooth.generator import evaluate, start_row
 from nonsmooth.poisson import EVEN, ODD
@@ -26,7 +26,6 @@ _STEPS = range(12, 85, 6)  # dimensions of the Krylov space that are compared
 _SHARE = 0.05  # of the tolerance, for the projection
 _COARSE, _FINEST = 1, 9  # levels
 _LARGEST = 45_000  # grid points; each pole keeps its factors in memory
-_MARGIN = 0.15  # of the box, to see whether it matters
 _DEPENDENT = 1e-10  # a function this much smaller without what it shares with others
 _ROUNDING = 3e-11  # relative; against linear scenes it comes to 9e-12
 _GROWTH = 1e-12  # relative rate from which on a mode is taken to grow
@@ -49,9 +48,10 @@ def moments(scene, times, tol):
     Returns
     -------
     moments, errors : numpy.ndarray, shape (2, t)
-        w and v. The errors are what the last refinement of the grid changes or, if larger, the sum
-        of what its variables change each for itself; to it come the box and the projection. They
-        oscillate with tau, relative to which each is the largest between tau / 2 and 2 tau.
+        w and v. The errors are those of `ladder.climb`; where that fails, what the last refinement
+        of the grid changes or, if larger, the sum of what its variables change each for itself,
+        and the box and the projection. They oscillate with tau, relative to which each is the
+        largest between tau / 2 and 2 tau.
 
     Raises
     ------
@@ -64,26 +64,11 @@ def moments(scene, times, tol):
     def solve(grid):
         return _on(scene, grid, times, _SHARE * tol * scale)
 
-    def size(change):
-        return np.max(np.abs(change[1]) / scale)
+    def share(error, _values):
+        return np.max(error[1] / (tol * scale))
 
     grid = _first_grid(scene, tol)
-    value, inexact = solve(grid)
-    while True:
-        trials = {symbol: solve(grid.raised(symbol)) for symbol in grid.levels}
-        changes = {symbol: trial[0] - value for symbol, trial in trials.items()}
-        coarse = [s for s in changes if not size(changes[s]) <= tol / (2 * len(changes))]
-        finer = grid
-        for symbol in coarse:
-            finer = finer.raised(symbol)
-        if not coarse or not _affordable(scene, refinement.raised(finer)):
-            break
-        grid = finer
-        value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
-    last, inexact = solve(refinement.raised(grid))
-    beyond = solve(replace(grid, margin=_MARGIN))[0] - value
-    apart = sum(np.abs(change) for change in changes.values())
-    error = np.maximum(np.abs(last - value), apart) + 2 * (np.abs(beyond) + inexact)
+    last, error = ladder.climb(grid, solve, share) or _refined(scene, grid, solve, share)
     # w is the difference of terms as large as the standard deviation
     w, v = np.abs(last)
     error += _ROUNDING * np.array([w + np.sqrt(v), v + w**2])
@@ -96,6 +81,25 @@ def moments(scene, times, tol):
     near = [(times >= tau / 2) & (times <= 2 * tau) for tau in wanted]
     largest = np.transpose([error[:, here].max(axis=1) for here in near])
     return last[:, place], largest * scale[place]
+
+
+def _refined(scene, grid, solve, share):
+    """Refine where it matters; what comes closest to the tolerance, with its error."""
+    value, inexact = solve(grid)
+    while True:
+        trials = {symbol: solve(grid.raised(symbol)) for symbol in grid.levels}
+        changes = {symbol: np.abs(trial[0] - value) for symbol, trial in trials.items()}
+        coarse = [s for s in changes if not share(changes[s], value) <= 1 / (2 * len(changes))]
+        finer = grid
+        for symbol in coarse:
+            finer = finer.raised(symbol)
+        if not coarse or not _affordable(scene, refinement.raised(finer)):
+            break
+        grid = finer
+        value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
+    last, inexact = solve(refinement.raised(grid))
+    beyond = np.abs(solve(replace(grid, margin=refinement.MARGIN))[0] - value)
+    return last, np.maximum(np.abs(last - value), sum(changes.values())) + 2 * (beyond + inexact)
 
 
 def _with_neighbours(times):
