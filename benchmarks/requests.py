@@ -610,7 +610,12 @@ QUANTITIES = {
 
 def empty_caches():
     """Forget what has been computed of scenes; compiled formulas stay."""
-    for kept in (quadrature._solved, corrected._constants, tail_transport.march):
+    for kept in (
+        quadrature._solved,
+        corrected._constants,
+        tail_transport.march,
+        tail_transport.reach,
+    ):
         kept.cache_clear()
 
 

@@ -12,8 +12,8 @@ from nonsmooth.hard_cases import CASES, MET, REFUSED, WARNED, WRONG, Case, Resul
 from nonsmooth.trajectories import step_bias
 
 PATHS = 1_000
-# solvers that take seconds, and a million steps; the target hard_cases has them
-SLOW = ("$b$ of probability", "double well, barrier $8 kT$", "$10^6$ steps a path")
+# solvers that take seconds; the target hard_cases has them
+SLOW = ("$b$ of probability", "double well, barrier $8 kT$")
 FAST = [
     case
     for case in CASES
