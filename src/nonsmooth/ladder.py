@@ -13,7 +13,8 @@ from nonsmooth import refinement
 
 _HIGHEST = 4
 _SAFETY = 2.0  # times the difference of two levels
-_GAIN = 30.0  # of a level, at most
+GAIN = 30.0  # of a level, at most; a change may be smaller because the error changes sign
+_BOXED = 1  # level on which a larger box is tried; that matters less on finer ones
 _RESIDUE = 1e-3  # of the tolerance, for rounding
 
 
@@ -37,25 +38,29 @@ def climb(grid, solve, share):
     Returns
     -------
     (values, errors) or None
-        The error is twice the difference of the last two levels, twice what a larger box changes,
-        and twice what is inexact. None if the tolerance is out of reach, or levels do not
-        converge: each must change the values by half of what the one before did.
+        The error is twice the difference of the last two levels (or `GAIN` times less than twice
+        the one before, if that is more), twice what a larger box changes, and twice what is
+        inexact. None if the tolerance is out of reach, or levels do not converge: each must change
+        the values by half of what the one before did.
     """
     grid = replace(grid, levels=dict.fromkeys(grid.levels, 0))
-    (values, _), step, beyond = solve(grid), math.inf, None
+    values, _ = solve(grid)
+    solved, change, size = [(grid, values)], 0.0, math.inf
     for left in reversed(range(_HIGHEST)):
-        below, grid = grid, refinement.raised(grid)
-        previous, (values, inexact) = values, solve(grid)
-        change = np.abs(values - previous)
-        before, step = step, share(change, values)
-        if not step <= min(before / 2, _GAIN**left / _SAFETY):
+        grid, previous = refinement.raised(grid), values
+        values, inexact = solve(grid)
+        change = np.maximum(np.abs(values - previous), change / GAIN)
+        larger, size = size, share(change, values)
+        if not size <= min(larger / 2, GAIN**left / _SAFETY):
             return None
         error = _SAFETY * change + 2 * inexact
         if share(error, values) <= 1:
-            if beyond is None:
-                beyond = 2 * np.abs(solve(replace(below, margin=refinement.MARGIN))[0] - previous)
-            if share(error + beyond, values) <= 1:
-                return values, error + beyond
+            coarse, there = solved[min(_BOXED, len(solved) - 1)]
+            wider, _ = solve(replace(coarse, margin=refinement.MARGIN))
+            error = error + 2 * np.abs(wider - there)
+            if share(error, values) <= 1:
+                return values, error
+        solved.append((grid, values))
     return None
 
 

@@ -86,16 +86,17 @@ def moments(scene, times, tol):
 def _refined(scene, grid, solve, share):
     """Refine where it matters; what comes closest to the tolerance, with its error."""
     value, inexact = solve(grid)
+    least = dict.fromkeys(grid.levels, 0.0)
     while True:
         trials = {symbol: solve(grid.raised(symbol)) for symbol in grid.levels}
-        changes = {symbol: np.abs(trial[0] - value) for symbol, trial in trials.items()}
+        changes = {s: np.maximum(np.abs(trials[s][0] - value), least[s]) for s in trials}
         coarse = [s for s in changes if not share(changes[s], value) <= 1 / (2 * len(changes))]
         finer = grid
         for symbol in coarse:
             finer = finer.raised(symbol)
         if not coarse or not _affordable(scene, refinement.raised(finer)):
             break
-        grid = finer
+        grid, least = finer, least | {s: changes[s] / ladder.GAIN for s in coarse}
         value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
     last, inexact = solve(refinement.raised(grid))
     beyond = np.abs(solve(replace(grid, margin=refinement.MARGIN))[0] - value)
