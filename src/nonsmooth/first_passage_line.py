@@ -12,7 +12,14 @@ from nonsmooth.transport import first_passage, waves
 
 # polynomial degree; nodes of a contour for a single time, and their spacing while the probability
 # rises; more nodes, of larger real part, would only make the rounding errors grow
-_LEVELS = ((4, 7, 1.2), (7, 11, 0.85), (9, 13, 0.75), (11, 15, 0.7), (14, 17, 0.65))
+_LEVELS = (
+    (4, 7, 1.2),
+    (6, 10, 0.9),
+    (7, 11, 0.85),
+    (9, 13, 0.75),
+    (11, 15, 0.7),
+    (14, 17, 0.65),
+)
 _DENSER = 0.65  # spacing of nodes where, from a far start, the probability rises fast up to 1
 _COARSE = 6  # degree in the search for saddles
 _SPARE = 18.0  # exponent of what is neglected, relative to the probability
