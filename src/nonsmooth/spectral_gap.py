@@ -16,7 +16,6 @@ from nonsmooth.poisson import EVEN, ODD
 _WANTED = 6  # eigenvalues computed; the slowest pair may be complex
 _FIT, _FINEST = 1, 8  # levels: where the box is fitted, and the last
 _SHARE = 1e-2  # of the tolerance, for the iteration
-_MARGIN = 0.15  # of the box, to see whether it matters
 # relative; against linear scenes it comes to 2e-12, and what moves eigenvalues that coincide apart
 # to 2e-13
 _ROUNDING, _BACKWARD = 2e-11, 5e-13
@@ -76,7 +75,7 @@ def spectral_gap(scene, tol=1e-6):
                 beyond = 0.0
             else:
                 coarse = next(unseen)
-                beyond = 2 * abs(solve(scene, coarse, _MARGIN)[0] - found[coarse])
+                beyond = 2 * abs(solve(scene, coarse, refinement.MARGIN)[0] - found[coarse])
             if error + beyond <= tol * value:
                 seconds = time.perf_counter() - began
                 return Estimate(value, error + beyond, "spectral elements", seconds)
