@@ -9,8 +9,9 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.growth import growth, integrals
-from nonsmooth.trajectories import gram, moments
+from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.moments import moments
+from nonsmooth.statistics.sampled_gamma2 import growth, integrals
 
 SCENE, STEP, PATHS, ROUNDS = ns.Scene("friction", n=100), 0.01, 64_000, 5
 TAU = [0.1, 1.0, 10.0, 100.0]

@@ -9,9 +9,10 @@ import pandas as pd
 from scipy import stats
 
 import nonsmooth as ns
-from nonsmooth.growth import growth, integrals
-from nonsmooth.sampled_crossing import first_passage_counts, proportion
-from nonsmooth.trajectories import gram, moments
+from nonsmooth.crossing.counting import first_passage_counts, proportion
+from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.moments import moments
+from nonsmooth.statistics.sampled_gamma2 import growth, integrals
 
 FRICTION = ns.Scene("friction", n=100)
 # the restoring force's gamma^2 is the forcing's spectrum at 0, whatever the yield

@@ -15,9 +15,9 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth import spectral
+from nonsmooth.crossing.first_passage.line import Line
 from nonsmooth.errors import ToleranceError
-from nonsmooth.first_passage_line import Line
+from nonsmooth.line import eigenfunctions
 
 ODD = ("y", "y + {a}*sin(2*y)", "y*(1 + {a}*y**2/(1 + y**2))", "y + {a}*y**3/(1 + y**2)")
 OTHER = ("y + {a}*abs(y)", "y + {a}*sin(y)**2", "y + {a}*cos(2*y)", "y + {a}*y**2/(1 + y**2)")
@@ -36,7 +36,7 @@ def draw(rng, formulas):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         scene = ns.Scene("friction", n=n, damping=10 ** rng.uniform(-1, 1), observable=g)
-        centre = "" if scene.is_odd() else f" - {spectral.mean(scene):.16g}"
+        centre = "" if scene.is_odd() else f" - {eigenfunctions.mean(scene):.16g}"
         scene = ns.Scene("friction", n=n, damping=scene.damping, observable=g + centre, start=start)
     b = 10 ** rng.uniform(-1, 0.7)
     threshold = [(-b, b), (-b, b * rng.uniform(0.5, 2)), (-np.inf, b)][rng.integers(3)]

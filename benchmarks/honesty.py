@@ -12,14 +12,14 @@ import numpy as np
 import pandas as pd
 import sympy
 from mpmath import mp
-
-import nonsmooth as ns
-from nonsmooth.errors import ToleranceError
-from nonsmooth.models import x
 from tests.test_quadrature import Reference
 from tests.test_quadrature import random_scene as random_velocity
 from tests.test_refinement import linear_reference, random_linear
 from tests.test_wells import langevin_growth
+
+import nonsmooth as ns
+from nonsmooth.errors import ToleranceError
+from nonsmooth.scenes.models import x
 
 POTENTIALS = ("{a}*x**2/2", "{a}*x**2/2 + {b}*cos(3*x)", "x**2/2 + {a}*exp(-2*x**2)", "{a}*x**4/4")
 FORCINGS = ("{a}*eta**2/2", "eta**4/4 + {a}*eta**2/2", "eta**4/4 - {a}*eta**2/2")

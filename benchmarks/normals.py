@@ -8,7 +8,7 @@ import numpy as np
 from scipy import stats
 
 import nonsmooth as ns
-from nonsmooth.streams import BLOCK, generator_words, normals
+from nonsmooth.paths.kernels.random_numbers import BLOCK, generator_words, normals
 
 SCENE = ns.Scene("friction")
 BLOCKS, ROUNDS, DRAWS = 8, 500, 125  # 8000 lanes, 500 * 125 * 2 numbers each

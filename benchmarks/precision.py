@@ -6,8 +6,9 @@
 import numpy as np
 
 import nonsmooth as ns
-from nonsmooth.sampled_crossing import first_passage_counts
-from nonsmooth.trajectories import gram, moments
+from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.moments import moments
 
 SCENE, PATHS = ns.Scene("friction", n=100), 200_000
 

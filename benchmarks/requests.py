@@ -24,12 +24,18 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth import corrected, quadrature, refinement, spectral, tail_transport, transient
+from nonsmooth.crossing import corrected_formula
+from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.errors import NonsmoothError, ToleranceError
-from nonsmooth.growth import growth, integrals
-from nonsmooth.sampled_crossing import first_passage_counts
-from nonsmooth.spectral_gap import _on as spectral_gap_on
-from nonsmooth.trajectories import SIGMAS, coarse_step, coupled, gram, moments
+from nonsmooth.grids import tensor_grid
+from nonsmooth.kinetic import tail_equation
+from nonsmooth.line import eigenfunctions, quadrature
+from nonsmooth.paths.ensembles import coupled, gram
+from nonsmooth.paths.moments import moments
+from nonsmooth.paths.resolution import SIGMAS, coarse_step
+from nonsmooth.statistics import gamma2_on_grids, moments_on_grids
+from nonsmooth.statistics.sampled_gamma2 import growth, integrals
+from nonsmooth.statistics.spectral_gap import _on as spectral_gap_on
 
 SEED, OUTPUT = 1, Path("results/requests")
 COLUMNS = [
@@ -318,7 +324,7 @@ def one_degree(solve):
     """Solve with a single polynomial degree, where the state is y and the noise white."""
 
     def runs(request):
-        if spectral.applies(request.scene):
+        if eigenfunctions.applies(request.scene):
             for degree in (4, 6, 8, 12, 16, 20):
                 yield lambda seed, degree=degree: (solve(request, degree), "one degree")
 
@@ -329,8 +335,8 @@ def one_grid(solve, levels=(0, 1, 2, 3, 4, 5), most=4):
     """Solve on a single tensor grid, of the same level in all of up to `most` variables."""
 
     def on(request, level):
-        depth = math.log(1 / request.tol) + refinement.SPARE
-        grid = refinement.fitted(request.scene, depth, min(level, 1))
+        depth = math.log(1 / request.tol) + tensor_grid.SPARE
+        grid = tensor_grid.fitted(request.scene, depth, min(level, 1))
         return solve(request, replace(grid, levels=dict.fromkeys(grid.levels, level)))
 
     def runs(request):
@@ -413,7 +419,7 @@ def by_correction(order):
     """Take a corrected formula, where the state is y and the noise white."""
 
     def runs(request):
-        if spectral.applies(request.scene):
+        if eigenfunctions.applies(request.scene):
             yield lambda seed: request.ask(method="corrected", order=order)
 
     return runs
@@ -421,28 +427,28 @@ def by_correction(order):
 
 def moments_on_degree(request, degree):
     """Expand v in eigenfunctions."""
-    return spectral.moments(request.scene, request.given["times"], degree)[1]
+    return eigenfunctions.moments(request.scene, request.given["times"], degree)[1]
 
 
 def growth_on_degree(request, degree):
     """Expand gamma^2 in eigenfunctions."""
-    return spectral.asymptotic_variance(request.scene, degree)
+    return eigenfunctions.asymptotic_variance(request.scene, degree)
 
 
 def gap_on_degree(request, degree):
     """Compute the gap."""
-    return spectral.spectrum(request.scene, degree).rates[1]
+    return eigenfunctions.spectrum(request.scene, degree).rates[1]
 
 
 def growth_on(request, grid):
     """Solve for gamma^2."""
-    return refinement.growth_rate(request.scene, grid, 0.02 * request.tol)
+    return gamma2_on_grids.growth_rate(request.scene, grid, 0.02 * request.tol)
 
 
 def moments_on(request, grid):
     """Solve for v."""
     times = request.given["times"]
-    return transient._on(request.scene, grid, times, 0.05 * request.tol * times)[0][1]
+    return moments_on_grids._on(request.scene, grid, times, 0.05 * request.tol * times)[0][1]
 
 
 def gap_on(request, grid):
@@ -473,7 +479,7 @@ def true_growth(request):
     scene = request.scene
     many = len(scene.state)
     if many == 1:
-        return spectral.asymptotic_variance(request.scene, 24), 0.0
+        return eigenfunctions.asymptotic_variance(request.scene, 24), 0.0
     if many == 2:
         return more_resolved(request)
     if many == 3:
@@ -499,7 +505,7 @@ def true_variance(request):
 
 def true_crossing(request):
     """Take the spectral method, where there is one."""
-    if spectral.applies(request.scene):
+    if eigenfunctions.applies(request.scene):
         finest = request.tol / min(request.tol / FINER, 1e-6)
         try:
             return more_resolved(request, (finest, FINER, RESOLVED), method="spectral")
@@ -515,7 +521,7 @@ def true_density(request):
 
 def true_gap(request):
     """Resolve more."""
-    if spectral.applies(request.scene):
+    if eigenfunctions.applies(request.scene):
         return gap_on_degree(request, 28), 0.0
     return more_resolved(request)
 
@@ -612,9 +618,9 @@ def empty_caches():
     """Forget what has been computed of scenes; compiled formulas stay."""
     for kept in (
         quadrature._solved,
-        corrected._constants,
-        tail_transport.march,
-        tail_transport.reach,
+        corrected_formula._constants,
+        tail_equation.march,
+        tail_equation.reach,
     ):
         kept.cache_clear()
 

@@ -16,11 +16,11 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.kernels import kernel
-from nonsmooth.panel import new_panel
-from nonsmooth.sampled_crossing import first_passage_counts
-from nonsmooth.streams import BLOCK, normals
-from nonsmooth.trajectories import gram
+from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.kernels.compilation import kernel
+from nonsmooth.paths.kernels.panel import new_panel
+from nonsmooth.paths.kernels.random_numbers import BLOCK, normals
 
 ROUNDS = 7
 STEP = 0.02

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from nonsmooth.panel import STATE, new_panel
-from nonsmooth.schemes import strang
+from nonsmooth.paths.kernels.panel import STATE, new_panel
+from nonsmooth.paths.schemes import strang
 
 ROOT = Path(__file__).parents[1]
 TRACKED = (

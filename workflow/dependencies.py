@@ -6,17 +6,17 @@ from pathlib import Path
 
 import grimp
 
-PACKAGE = "nonsmooth"
+PACKAGES = ("nonsmooth", "reproduction")
 
 
 @lru_cache(maxsize=1)
 def _graph():
-    return grimp.build_graph(PACKAGE, cache_dir=None)
+    return grimp.build_graph(*PACKAGES, cache_dir=None)
 
 
 @cache
 def sources(script):
-    """List the modules of the package that a script imports, directly or through others.
+    """List the modules of the two packages that a script imports, directly or through others.
 
     Parameters
     ----------
@@ -31,12 +31,14 @@ def sources(script):
     tree = ast.parse(Path(script).read_text(encoding="utf-8"))
     named = set()
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGE):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGES):
             named |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Import):
             named |= {alias.name for alias in node.names}
-    direct = {name for name in named if name in _graph().modules and name != PACKAGE}
-    needed = direct.union(*(_graph().find_upstream_modules(name) for name in direct)) - {PACKAGE}
+    direct = {name for name in named if name in _graph().modules} - set(PACKAGES)
+    needed = direct.union(*(_graph().find_upstream_modules(name) for name in direct)) - set(
+        PACKAGES
+    )
     return sorted(map(_file, needed))
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import yaml
 
-from nonsmooth.configuration import validate
 from nonsmooth.errors import AssumptionWarning, ConfigError, SceneError
-from nonsmooth.noises import Langevin
-from nonsmooth.plasticity import yielding_oscillator
-from nonsmooth.scene import Scene, by_formulas
+from nonsmooth.scenes.noises import Langevin
+from nonsmooth.scenes.scene import Scene, by_formulas
+from reproduction.configuration import validate
+from reproduction.plasticity import yielding_oscillator
 
 SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"
 

@@ -8,20 +8,20 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "brownian": [
+        "crossing.brownian": [
             "brownian_crossing",
             "brownian_first_passage_density",
             "brownian_survival",
         ],
-        "crossing": ["crossing_probability"],
-        "density": ["invariant_density"],
+        "crossing.probability": ["crossing_probability"],
+        "statistics.invariant_density": ["invariant_density"],
         "errors": ["NonsmoothError"],
         "estimate": ["Estimate"],
-        "milne": ["extrapolation_length"],
-        "noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],
-        "scene": ["Scene"],
-        "spectral_gap": ["spectral_gap"],
-        "trajectories": ["simulate"],
-        "variance": ["asymptotic_variance", "variance"],
+        "boundary_layer.extrapolation_length": ["extrapolation_length"],
+        "scenes.noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],
+        "scenes.scene": ["Scene"],
+        "statistics.spectral_gap": ["spectral_gap"],
+        "paths.simulation": ["simulate"],
+        "statistics.variance": ["asymptotic_variance", "variance"],
     },
 )

@@ -9,14 +9,14 @@ import xarray as xr
 from conftest import ROOT
 from scipy.special import ndtr, ndtri
 
-from nonsmooth import errata
-from nonsmooth.brownian import brownian_crossing
-from nonsmooth.drift_condition import margins
-from nonsmooth.ergodicity import Bound
+from nonsmooth.crossing.brownian import brownian_crossing
+from nonsmooth.crossing.counting import crossing_estimate
 from nonsmooth.errors import CheckError
 from nonsmooth.estimate import Estimate
-from nonsmooth.sampled_crossing import crossing_estimate
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.theory.drift_condition import margins
+from nonsmooth.theory.ergodicity import Bound
+from reproduction import errata
 
 TAU = np.array([0.1, 1.0, 10.0])
 SCRIPTS = ROOT / "workflow" / "scripts"

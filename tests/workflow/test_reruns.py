@@ -66,8 +66,8 @@ def test_more_paths_run_new_shards_only(finished):
 
 
 def test_a_module_reruns_exactly_the_rules_that_use_it(finished):
-    """finite_difference.py is imported by three compute scripts; its results feed the rest."""
-    with open(finished.folder / "src/nonsmooth/finite_difference.py", "a") as file:
+    """finite_differences.py is imported by three compute scripts; its results feed the rest."""
+    with open(finished.folder / "src/nonsmooth/line/finite_differences.py", "a") as file:
         file.write("# changed\n")
     jobs = finished.jobs()
     assert jobs == {
@@ -84,8 +84,8 @@ def test_a_module_reruns_exactly_the_rules_that_use_it(finished):
 
 
 def test_a_module_is_followed_through_other_modules(finished):
-    """flows.py is imported by the splitting only, which every simulation uses."""
-    with open(finished.folder / "src/nonsmooth/flows.py", "a") as file:
+    """exact_flows.py is imported by the splitting only, which every simulation uses."""
+    with open(finished.folder / "src/nonsmooth/paths/kernels/exact_flows.py", "a") as file:
         file.write("# changed\n")
     jobs = finished.jobs()
     simulations = {"trajectories", "variance_shard", "variance_halving", "crossing_shard"}
@@ -166,7 +166,7 @@ def test_a_new_limit_of_the_deformation_is_simulated_alone(finished):
 
 def test_gamma_does_not_rerun_the_samples_of_the_limit_theorem(finished):
     """growth.py gives gamma^2; the samples are divided by it afterwards."""
-    with open(finished.folder / "src/nonsmooth/growth.py", "a") as file:
+    with open(finished.folder / "src/nonsmooth/statistics/sampled_gamma2.py", "a") as file:
         file.write("# changed\n")
     jobs = finished.jobs()
     assert jobs["sweep_variance"] == 1

@@ -11,7 +11,7 @@ import pytest
 import typst
 
 import nonsmooth as ns
-from nonsmooth import artifact
+from reproduction import artifact
 
 RESULTS = "results/smoke"
 FIGURES = [f"figure_{name}" for name in ("1", "2a", "2b", *"3456789", "10", "12")]

@@ -1,9 +1,9 @@
 """One column of table 4 by the paper's scheme."""
 
-from nonsmooth import artifact
-from nonsmooth.finite_difference import moments_with_error
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
+from nonsmooth.line.finite_differences import moments_with_error
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def paper_scheme(scene, n, horizon, half_width, nodes, time_step):

@@ -1,9 +1,9 @@
 """One column of table 4 by spectral elements, and gamma_n^2 in closed form."""
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.variance import asymptotic_variance, variance
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.variance import asymptotic_variance, variance
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def reference(scene, n, horizon, tolerance):

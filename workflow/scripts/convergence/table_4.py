@@ -3,7 +3,7 @@
 import pandas as pd
 import yaml
 
-from nonsmooth.tables import penalization, scientific, sorted_by, typeset
+from reproduction.tables import penalization, scientific, sorted_by, typeset
 
 PRINTED = "paper/printed.yaml"
 

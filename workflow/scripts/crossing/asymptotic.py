@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.crossing import crossing_probability
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
+from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def limit(scene, threshold, horizon, outputs):

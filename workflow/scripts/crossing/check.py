@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.special import ndtri
 
-from nonsmooth import artifact
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
-from nonsmooth.tables import sorted_by
+from reproduction import artifact
+from reproduction.jobs import produce
+from reproduction.tables import sorted_by
 
 FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 

@@ -3,8 +3,8 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.plotting import BLACK, LOOKS, ORANGE, TEXT_WIDTH, draw
-from nonsmooth.tables import sorted_by
+from reproduction.plots import BLACK, LOOKS, ORANGE, TEXT_WIDTH, draw
+from reproduction.tables import sorted_by
 
 
 def crossing(monte_carlo, exact, asymptotic, check, contained):

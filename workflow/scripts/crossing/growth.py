@@ -2,11 +2,13 @@
 
 from functools import partial
 
-from nonsmooth import artifact, schemes
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.trajectories import coupled, step_bias
-from nonsmooth.variance import variance
+from nonsmooth.paths import schemes
+from nonsmooth.paths.ensembles import coupled
+from nonsmooth.paths.moments import step_bias
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.variance import variance
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def growth(scene, time, step, paths, seed, threads):

@@ -2,11 +2,12 @@
 
 from functools import partial
 
-from nonsmooth import artifact, schemes
+from nonsmooth.crossing.counting import first_passage_shift
 from nonsmooth.errors import SceneError
-from nonsmooth.jobs import produce
-from nonsmooth.sampled_crossing import first_passage_shift
-from nonsmooth.scene import Scene
+from nonsmooth.paths import schemes
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def halving(scene, threshold, horizon, p, step, paths, seed, threads):

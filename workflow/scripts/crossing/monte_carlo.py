@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.sampled_crossing import DESCRIPTIONS, crossing_estimate
+from nonsmooth.crossing.counting import DESCRIPTIONS, crossing_estimate
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def merge(shards, halving, p):

@@ -4,10 +4,10 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.sampled_crossing import first_passage_counts
-from nonsmooth.scene import Scene
+from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from nonsmooth.tables import scientific, typeset
+from reproduction.tables import scientific, typeset
 
 
 def time_step(check):

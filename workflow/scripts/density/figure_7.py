@@ -2,10 +2,10 @@
 
 import matplotlib.pyplot as plt
 
-from nonsmooth.models import MODELS
-from nonsmooth.noises import NOISES
-from nonsmooth.plotting import BLUE, ORANGE, TEXT_WIDTH, draw
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.noises import NOISES
+from nonsmooth.scenes.scene import Scene
+from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw
 
 LOOKS = {
     "y": (BLUE, "o", "-", "velocity $y$"),

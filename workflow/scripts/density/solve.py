@@ -4,12 +4,12 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.density import bin_averages
-from nonsmooth.jobs import produce
-from nonsmooth.models import x
-from nonsmooth.scene import Scene
-from nonsmooth.trajectories import paths_at
+from nonsmooth.paths.ensembles import paths_at
+from nonsmooth.scenes.models import x
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.invariant_density import bin_averages
+from reproduction import artifact
+from reproduction.jobs import produce
 
 TITLES = {"y": "velocity", "x": "displacement"}
 REACH = 4.0  # standard deviations that the bins cover

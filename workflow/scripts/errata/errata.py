@@ -1,9 +1,9 @@
 """Every erratum of the paper: printed, mended and reference values."""
 
-from nonsmooth import artifact
-from nonsmooth.errata import ERRATA
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
+from reproduction import artifact
+from reproduction.errata import ERRATA
+from reproduction.jobs import produce
 
 TEXTS = (
     ("place", "where in the paper"),
@@ -30,7 +30,8 @@ def evaluate():
         if evidence.holds(evidence.printed) or not evidence.holds(evidence.mended):
             raise CheckError(
                 f"erratum {label}: printed {evidence.printed:.6g}, mended {evidence.mended:.6g}, "
-                f"reference {evidence.reference:.6g}: the entry of src/nonsmooth/errata.py is wrong"
+                f"reference {evidence.reference:.6g}: the entry of src/reproduction/errata.py "
+                "is wrong"
             )
 
     def values(name):

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from nonsmooth.tables import scientific, typeset
+from reproduction.tables import scientific, typeset
 
 RELATION = {"equal": "", "bound": r"\geq ", "below": r"\leq "}
 WIDTHS = ("auto", "1.2fr", "2fr", "2fr", "1.8fr", *["auto"] * 5)

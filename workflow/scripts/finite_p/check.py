@@ -3,11 +3,11 @@
 import numpy as np
 from scipy.special import ndtri
 
-from nonsmooth import artifact
+from nonsmooth.crossing.counting import proportion
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
-from nonsmooth.sampled_crossing import proportion
-from nonsmooth.tables import sorted_by
+from reproduction import artifact
+from reproduction.jobs import produce
+from reproduction.tables import sorted_by
 
 OUTSIDE = 1e-6  # probability that a simultaneous band misses its curve by chance
 RARELY = 1e-3  # probability that the 95 % bands contain the curves too rarely by chance

@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 
-from nonsmooth.plotting import BLACK, BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
+from reproduction.plots import BLACK, BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
 
 LOOKS = {
     "plain": (ORANGE, "o", "-"),

@@ -4,12 +4,12 @@ from dataclasses import asdict
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.crossing import crossing_probability
+from nonsmooth.boundary_layer.symmetric_line import expansion
+from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
-from nonsmooth.milne import expansion
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 EXACT = {"method": "spectral", "tol": 1e-8}  # at p = 1e6 errors of order 1 are 1e-7
 LIMIT = "plain"  # states no distance to a finite p

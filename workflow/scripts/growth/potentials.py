@@ -5,11 +5,11 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.growth import growth, growth_bias, integrals
-from nonsmooth.jobs import produce
-from nonsmooth.scene import by_formulas
-from nonsmooth.variance import asymptotic_variance
+from nonsmooth.scenes.scene import by_formulas
+from nonsmooth.statistics.sampled_gamma2 import growth, growth_bias, integrals
+from nonsmooth.statistics.variance import asymptotic_variance
+from reproduction import artifact
+from reproduction.jobs import produce
 
 DESCRIPTIONS = {
     "gamma2": "growth rate of the variance of int_0^t g",

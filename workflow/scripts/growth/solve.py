@@ -1,9 +1,9 @@
 """gamma^2 of one scene without Monte Carlo."""
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.variance import asymptotic_variance
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.variance import asymptotic_variance
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def solve(scene, tolerance):

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from nonsmooth.scene import Scene
-from nonsmooth.tables import symbol, typeset
-from nonsmooth.two_methods import compared
+from nonsmooth.scenes.scene import Scene
+from reproduction.gamma2 import compared
+from reproduction.tables import symbol, typeset
 
 
 def growth(solved, sampled, names, scenes):

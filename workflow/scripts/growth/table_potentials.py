@@ -3,9 +3,9 @@
 import pandas as pd
 import sympy
 
-from nonsmooth.scene import by_formulas
-from nonsmooth.tables import symbol, typeset
-from nonsmooth.two_methods import compared
+from nonsmooth.scenes.scene import by_formulas
+from reproduction.gamma2 import compared
+from reproduction.tables import symbol, typeset
 
 SAMPLED = {"gamma2": "monte_carlo", "gamma2_error": "monte_carlo_error"}
 DIGITS = 2  # of the correlation time

@@ -2,10 +2,10 @@
 
 import math
 
-from nonsmooth import artifact
 from nonsmooth.errors import CheckError
-from nonsmooth.hard_cases import CASES, DEVIATIONS, REFUSED, WRONG, examine
-from nonsmooth.jobs import produce
+from reproduction import artifact
+from reproduction.hard_cases import CASES, DEVIATIONS, REFUSED, WRONG, examine
+from reproduction.jobs import produce
 
 
 def judge(paths):

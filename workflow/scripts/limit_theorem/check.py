@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from nonsmooth import artifact
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
-from nonsmooth.limit_theorem import (
+from reproduction import artifact
+from reproduction.jobs import produce
+from reproduction.limit_theorem import (
     allowed_distance,
     distance_to_limit,
     error_bound,

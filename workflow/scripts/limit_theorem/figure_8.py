@@ -3,10 +3,10 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.models import MODELS
-from nonsmooth.noises import NOISES
-from nonsmooth.plotting import BLUE, ORANGE, TEXT_WIDTH, draw
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.noises import NOISES
+from nonsmooth.scenes.scene import Scene
+from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw
 
 # the factor of p moves the points apart, so that their error bars do not cover each other
 LOOKS = {

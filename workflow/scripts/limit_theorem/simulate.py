@@ -4,10 +4,10 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.limit_theorem import scaled_integrals
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
+from reproduction.limit_theorem import scaled_integrals
 
 
 def simulate(scene, p, step, paths, seed, threads):

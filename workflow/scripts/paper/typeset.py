@@ -6,8 +6,8 @@ from pathlib import Path
 import typst
 
 from nonsmooth.errors import ArtifactError
-from nonsmooth.files import whole
-from nonsmooth.jobs import job
+from reproduction.files import whole
+from reproduction.jobs import job
 
 
 def compile_paper(template, results, output):

@@ -7,12 +7,12 @@ import tylax
 import yaml
 from sympy import latex
 
-from nonsmooth.expressions import parse
-from nonsmooth.files import whole
-from nonsmooth.jobs import inputs, job
-from nonsmooth.models import eta, x
-from nonsmooth.plasticity import relaxation_time
-from nonsmooth.tables import penalization, scientific
+from nonsmooth.scenes.formulas import parse
+from nonsmooth.scenes.models import eta, x
+from reproduction.files import whole
+from reproduction.jobs import inputs, job
+from reproduction.plasticity import relaxation_time
+from reproduction.tables import penalization, scientific
 
 PRINTED = "paper/printed.yaml"
 SIGNIFICANT = 3.0  # standard errors from which on the text calls the formula too low

@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.special import ndtri
 
-from nonsmooth import artifact
-from nonsmooth.brownian import asymptotic_crossing
+from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
+from reproduction import artifact
+from reproduction.jobs import produce
 
 FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 DESCRIPTIONS = {

@@ -4,11 +4,11 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.crossing import crossing_probability
-from nonsmooth.jobs import produce
-from nonsmooth.plasticity import yielding_oscillator
-from nonsmooth.sampled_crossing import DESCRIPTIONS
+from nonsmooth.crossing.counting import DESCRIPTIONS
+from nonsmooth.crossing.probability import crossing_probability
+from reproduction import artifact
+from reproduction.jobs import produce
+from reproduction.plasticity import yielding_oscillator
 
 
 def crossing(ground, oscillator, limit, duration, outputs, step, paths, seed, threads):

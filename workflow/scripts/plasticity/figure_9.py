@@ -3,8 +3,8 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.plasticity import relaxation_time
-from nonsmooth.plotting import BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
+from reproduction.plasticity import relaxation_time
+from reproduction.plots import BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
 
 COLORS = [GREEN, BLUE, ORANGE]
 # the plain and the corrected formula

@@ -2,11 +2,11 @@
 
 from functools import partial
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.milne import extrapolation_length
-from nonsmooth.plasticity import yielding_oscillator
-from nonsmooth.variance import asymptotic_variance
+from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
+from nonsmooth.statistics.variance import asymptotic_variance
+from reproduction import artifact
+from reproduction.jobs import produce
+from reproduction.plasticity import yielding_oscillator
 
 
 def variance(ground, oscillator, tolerance, seed, threads):

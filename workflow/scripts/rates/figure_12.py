@@ -4,10 +4,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullFormatter
 
-from nonsmooth.models import MODELS
-from nonsmooth.noises import NOISES
-from nonsmooth.plotting import BLUE, ORANGE, TEXT_WIDTH, draw
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.noises import NOISES
+from nonsmooth.scenes.scene import Scene
+from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw
 
 LOOKS = {
     "pathwise": (BLUE, "o", "-", r"paths, $E \sup |\cdot|$"),

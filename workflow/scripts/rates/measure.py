@@ -4,17 +4,17 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.rates import (
+from nonsmooth.line.eigenfunctions import applies
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
+from reproduction.rates import (
     contact_time,
     growth_difference,
     largest_distances,
     slope,
     variance_difference,
 )
-from nonsmooth.scene import Scene
-from nonsmooth.spectral import applies
 
 KINDS = {
     "pathwise": "mean of the largest distance up to T, on the same Brownian path",

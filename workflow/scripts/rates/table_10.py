@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from nonsmooth.models import MODELS
-from nonsmooth.scene import Scene
-from nonsmooth.tables import scientific, typeset
+from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.scene import Scene
+from reproduction.tables import scientific, typeset
 
 
 def exponents(rates, scenes):

@@ -4,8 +4,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from nonsmooth.models import ELASTO_PLASTIC, FRICTION, OBSTACLE
-from nonsmooth.plotting import TEXT_WIDTH, draw
+from nonsmooth.scenes.models import ELASTO_PLASTIC, FRICTION, OBSTACLE
+from reproduction.plots import TEXT_WIDTH, draw
 
 LINE = {"color": "black", "linewidth": 1.1, "solid_capstyle": "butt"}
 

@@ -3,8 +3,8 @@
 import pandas as pd
 import sympy
 
-from nonsmooth.models import MODELS, x, y
-from nonsmooth.tables import typeset
+from nonsmooth.scenes.models import MODELS, x, y
+from reproduction.tables import typeset
 
 
 def penalties():

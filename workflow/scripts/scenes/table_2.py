@@ -3,12 +3,12 @@
 import pandas as pd
 import sympy
 
-from nonsmooth import generic
-from nonsmooth.noises import NOISES
-from nonsmooth.tables import typeset
+from nonsmooth.scenes import equations
+from nonsmooth.scenes.noises import NOISES
+from reproduction.tables import typeset
 
 
-def equations():
+def state_equations():
     """Tabulate F_n and sigma from the definitions of noises and oscillator.
 
     Returns
@@ -17,7 +17,7 @@ def equations():
     """
     plain, cells = [], []
     for noise in NOISES.values():
-        drift, sigma = generic.drift(noise), generic.diffusion(noise)
+        drift, sigma = equations.drift(noise), equations.diffusion(noise)
         state = sympy.latex(sympy.Matrix(list(drift)))
         plain += [
             {"noise": noise.title, "variable": str(s), "F_n": str(f), "sigma": int(e)}
@@ -35,4 +35,4 @@ def equations():
 
 
 if __name__ == "__main__":
-    typeset(equations, snakemake)
+    typeset(state_equations, snakemake)

@@ -3,9 +3,9 @@
 import pandas as pd
 import sympy
 
-from nonsmooth.generic import U
-from nonsmooth.models import MODELS, x
-from nonsmooth.tables import typeset
+from nonsmooth.scenes.equations import U
+from nonsmooth.scenes.models import MODELS, x
+from reproduction.tables import typeset
 
 
 def forces():

@@ -4,14 +4,14 @@ import os
 
 import numpy as np
 
-from nonsmooth import finite_difference, spectral
-from nonsmooth.crossing import crossing_probability
-from nonsmooth.jobs import produce
-from nonsmooth.sampled_crossing import first_passage_counts
-from nonsmooth.scene import Scene
-from nonsmooth.trajectories import gram
-from nonsmooth.variance import asymptotic_variance
-from nonsmooth.work_precision import Case, measured, timed, unseeded
+from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.line import eigenfunctions, finite_differences
+from nonsmooth.paths.ensembles import gram
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.variance import asymptotic_variance
+from reproduction.jobs import produce
+from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
 SIMULATED, SOLVED = "Monte Carlo, Strang", "spectral"
 
@@ -123,11 +123,11 @@ def _simulated(scene, horizon, step, paths, seed, scheme="strang", control=False
 
 
 def _expanded(scene, horizon):
-    return spectral.moments(scene, np.array([horizon]), 12)[1][0]
+    return eigenfunctions.moments(scene, np.array([horizon]), 12)[1][0]
 
 
 def _marched(scene, horizon, size):
-    return finite_difference.moments(scene, [horizon], **size)[1][0]
+    return finite_differences.moments(scene, [horizon], **size)[1][0]
 
 
 def _counted(scene, p, step, paths, seed):

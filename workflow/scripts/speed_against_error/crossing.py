@@ -5,15 +5,15 @@ from itertools import product
 import numpy as np
 from scipy.special import binom
 
-from nonsmooth.crossing import crossing_probability
-from nonsmooth.jobs import produce
-from nonsmooth.laplace import hyperbola
-from nonsmooth.ordinates import ordinates
-from nonsmooth.sampled_crossing import first_passage_counts
-from nonsmooth.scene import Scene
-from nonsmooth.streams import labelled
-from nonsmooth.transport import first_passage
-from nonsmooth.work_precision import Case, measured, timed, unseeded
+from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.crossing.first_passage.contours import hyperbola
+from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.kinetic.case_modes import first_passage
+from nonsmooth.kinetic.ordinates_line import ordinates
+from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.scenes.scene import Scene
+from reproduction.jobs import produce
+from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
 SECTOR = 0.3  # half angle of the contour about the negative axis
 

@@ -5,8 +5,8 @@ from itertools import cycle
 import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.plotting import BLACK, BLUE, GREEN, ORANGE, SKY, TEXT_WIDTH, draw
-from nonsmooth.work_precision import front
+from reproduction.plots import BLACK, BLUE, GREEN, ORANGE, SKY, TEXT_WIDTH, draw
+from reproduction.speed_against_error.work_precision import front
 
 LOOKS = [
     (BLUE, "o", "-"),

@@ -1,13 +1,13 @@
 """gamma^2 of every scene, deterministically and by Monte Carlo: error against time."""
 
-from nonsmooth import spectral
-from nonsmooth.growth import growth as slope
-from nonsmooth.growth import integrals
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.streams import labelled
-from nonsmooth.variance import asymptotic_variance
-from nonsmooth.work_precision import Case, measured, timed, unseeded
+from nonsmooth.line import eigenfunctions
+from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.sampled_gamma2 import growth as slope
+from nonsmooth.statistics.sampled_gamma2 import integrals
+from nonsmooth.statistics.variance import asymptotic_variance
+from reproduction.jobs import produce
+from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
 
 def growth(solved, names, scenes, degrees, tolerances, times, step, paths, rounds):
@@ -63,7 +63,7 @@ def growth(solved, names, scenes, degrees, tolerances, times, step, paths, round
 
 
 def _expanded(scene, degree, unit):
-    return spectral.asymptotic_variance(scene, degree) / unit
+    return eigenfunctions.asymptotic_variance(scene, degree) / unit
 
 
 def _solved(scene, tol, unit):

@@ -5,13 +5,14 @@ from contextlib import ExitStack
 from itertools import product
 from pathlib import Path
 
-from nonsmooth import schemes
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.streams import labelled
-from nonsmooth.trajectories import gram, moments
-from nonsmooth.variance import variance
-from nonsmooth.work_precision import Case, measured, peer, timed
+from nonsmooth.paths import schemes
+from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.paths.moments import moments
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.variance import variance
+from reproduction.jobs import produce
+from reproduction.speed_against_error.work_precision import Case, measured, peer, timed
 
 PEERS = Path("benchmarks/peers/simulations.py")
 # name -> scheme, control variate

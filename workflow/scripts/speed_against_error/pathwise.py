@@ -3,10 +3,10 @@
 from functools import lru_cache
 from itertools import product
 
-from nonsmooth.jobs import produce
-from nonsmooth.pathwise import BrownianPaths
-from nonsmooth.scene import Scene
-from nonsmooth.work_precision import Case, measured
+from nonsmooth.scenes.scene import Scene
+from reproduction.jobs import produce
+from reproduction.speed_against_error.pathwise import BrownianPaths
+from reproduction.speed_against_error.work_precision import Case, measured
 
 
 def pathwise(models, n, horizon, doublings, reference, paths, rounds):

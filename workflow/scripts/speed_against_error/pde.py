@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.polynomial import legendre
 
-from nonsmooth import finite_difference, spectral
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.work_precision import Case, measured, peer, timed, unseeded
+from nonsmooth.line import eigenfunctions, finite_differences
+from nonsmooth.scenes.scene import Scene
+from reproduction.jobs import produce
+from reproduction.speed_against_error.work_precision import Case, measured, peer, timed, unseeded
 
 PEERS = "benchmarks/peers"
 
@@ -86,11 +86,11 @@ def pde(horizon, n, paper_scheme, fitted_grid, spectral_elements, libraries, rou
 
 
 def _marched(scene, horizon, size):
-    return finite_difference.moments(scene, [horizon], **size)[1][0] / horizon
+    return finite_differences.moments(scene, [horizon], **size)[1][0] / horizon
 
 
 def _expanded(scene, horizon, degree):
-    return spectral.moments(scene, np.array([horizon]), degree)[1][0] / horizon
+    return eigenfunctions.moments(scene, np.array([horizon]), degree)[1][0] / horizon
 
 
 def long_run(n, horizon, points=20, elements=40):

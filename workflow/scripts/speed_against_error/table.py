@@ -2,8 +2,8 @@
 
 import pandas as pd
 
-from nonsmooth.tables import scientific, typeset
-from nonsmooth.work_precision import exponent, front
+from reproduction.speed_against_error.work_precision import exponent, front
+from reproduction.tables import scientific, typeset
 
 
 def tabulate(measurements, x, y):

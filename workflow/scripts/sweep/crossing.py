@@ -4,15 +4,15 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.sampled_crossing import (
+from nonsmooth.crossing.counting import (
     DESCRIPTIONS,
     crossing_estimate,
     first_passage_bias,
     first_passage_counts,
 )
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, seed, threads):

@@ -4,10 +4,10 @@ from itertools import cycle
 
 import matplotlib.pyplot as plt
 
-from nonsmooth.models import MODELS
-from nonsmooth.noises import NOISES
-from nonsmooth.plotting import LOOKS, ORANGE, TEXT_WIDTH, draw
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.noises import NOISES
+from nonsmooth.scenes.scene import Scene
+from reproduction.plots import LOOKS, ORANGE, TEXT_WIDTH, draw
 
 
 def sweep(crossing, limit, scenes, p):

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from nonsmooth import artifact
-from nonsmooth.brownian import asymptotic_crossing
+from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
+from reproduction import artifact
+from reproduction.jobs import produce
 
 ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7
 

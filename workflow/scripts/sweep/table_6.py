@@ -2,8 +2,8 @@
 
 import pandas as pd
 
-from nonsmooth.scene import Scene
-from nonsmooth.tables import typeset
+from nonsmooth.scenes.scene import Scene
+from reproduction.tables import typeset
 
 
 def sweep(variance, crossing, limit, scenes, p):

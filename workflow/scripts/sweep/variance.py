@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from nonsmooth import artifact
-from nonsmooth.growth import growth, growth_bias, integrals
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.sampled_gamma2 import growth, growth_bias, integrals
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def variance(scene, times, step, paths, halving_paths, seed, threads):

@@ -4,12 +4,12 @@ import itertools
 import warnings
 from dataclasses import asdict
 
-from nonsmooth import artifact
-from nonsmooth.drift_condition import margins
 from nonsmooth.errors import AssumptionWarning, CheckError
-from nonsmooth.jobs import produce
-from nonsmooth.noises import NOISES, Langevin
-from nonsmooth.scene import Scene
+from nonsmooth.scenes.noises import NOISES, Langevin
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.theory.drift_condition import margins
+from reproduction import artifact
+from reproduction.jobs import produce
 
 MARGINS = {
     "drift": "1 - sup(A_n V_n + epsilon V_n) / C",

@@ -3,9 +3,9 @@
 import pandas as pd
 from sympy import latex
 
-from nonsmooth.expressions import parse
-from nonsmooth.models import eta
-from nonsmooth.tables import scientific, typeset
+from nonsmooth.scenes.formulas import parse
+from nonsmooth.scenes.models import eta
+from reproduction.tables import scientific, typeset
 
 COLUMNS = {
     "drift": r"$1 - \sup / C$",

@@ -3,8 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from nonsmooth.scene import Scene
-from nonsmooth.tables import symbol, typeset
+from nonsmooth.scenes.scene import Scene
+from reproduction.tables import symbol, typeset
 
 
 def ergodic(ergodicity, scenes):

@@ -1,6 +1,6 @@
 """Figure 3: trajectories of the elasto-plastic model."""
 
-from nonsmooth.plotting import draw, trajectory
+from reproduction.plots import draw, trajectory
 
 # the paper's axes
 LIMITS = {"Y": (-6, 4), "X": (-4, 2), "phase": ((-3.5, 1.5), (-6, 2))}

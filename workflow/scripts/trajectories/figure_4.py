@@ -1,6 +1,6 @@
 """Figure 4: trajectories of the obstacle model."""
 
-from nonsmooth.plotting import draw, trajectory
+from reproduction.plots import draw, trajectory
 
 # the paper's axes
 LIMITS = {"Y": (-2, 1.75), "X": (-4, 1.5), "phase": ((-4, 1.5), (-2, 1.25))}

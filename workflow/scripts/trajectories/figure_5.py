@@ -1,6 +1,6 @@
 """Figure 5: trajectories of the friction model."""
 
-from nonsmooth.plotting import draw, trajectory
+from reproduction.plots import draw, trajectory
 
 # the paper's axes
 LIMITS = {"Y": (-1.75, 1.75), "X": (-8, 1), "phase": ((-7, 2), (-1.75, 1.75))}

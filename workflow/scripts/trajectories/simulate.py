@@ -3,10 +3,10 @@
 import numpy as np
 import xarray as xr
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.trajectories import simulate
+from nonsmooth.paths.simulation import simulate
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def same_noise(model, potential, damping, n, horizon, step, outputs, seed, path):

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.special import ndtri
 
-from nonsmooth import artifact
 from nonsmooth.errors import CheckError
-from nonsmooth.jobs import produce
+from reproduction import artifact
+from reproduction.jobs import produce
 
 FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although nothing is wrong
 

@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 
-from nonsmooth.plotting import BLACK, BLUE, ORANGE, SKY, TEXT_WIDTH, draw
+from reproduction.plots import BLACK, BLUE, ORANGE, SKY, TEXT_WIDTH, draw
 
 
 def growth(spectral, finite_difference, monte_carlo, check):

@@ -1,9 +1,10 @@
 """w and v of figure 2a by the paper's finite-difference scheme."""
 
-from nonsmooth import artifact, times
-from nonsmooth.finite_difference import moments_with_error
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
+from nonsmooth.line.finite_differences import moments_with_error
+from nonsmooth.paths import time_grids
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def paper_scheme(scene, first_time, horizon, points, half_width, nodes, time_step):
@@ -14,7 +15,7 @@ def paper_scheme(scene, first_time, horizon, points, half_width, nodes, time_ste
     xarray.Dataset
     """
     scene = Scene(**scene)
-    tau = times.logarithmic(first_time, horizon, points)
+    tau = time_grids.logarithmic(first_time, horizon, points)
     _, v, _, v_error = moments_with_error(scene, tau, half_width, nodes, time_step)
     return artifact.dataset(
         "Variance of the integrated observable by the paper's finite differences",

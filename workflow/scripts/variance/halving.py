@@ -2,10 +2,12 @@
 
 from functools import partial
 
-from nonsmooth import artifact, schemes, times
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.trajectories import coupled, step_bias
+from nonsmooth.paths import schemes, time_grids
+from nonsmooth.paths.ensembles import coupled
+from nonsmooth.paths.moments import step_bias
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def halving(scene, first_time, horizon, points, step, paths, seed, threads):
@@ -18,7 +20,7 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
         step h is the change by halving, divided by 1 - 2^-q.
     """
     scene = Scene(**scene)
-    tau = times.logarithmic(first_time, horizon, points)
+    tau = time_grids.logarithmic(first_time, horizon, points)
     change, _ = coupled(scene, tau, step, paths, (seed, "halving"), threads)
     bias, error = step_bias(change, schemes.scheme(scene, "strang").weak_order(scene))
     return artifact.dataset(

@@ -2,9 +2,9 @@
 
 from functools import reduce
 
-from nonsmooth import artifact
-from nonsmooth.jobs import produce
-from nonsmooth.trajectories import moments
+from nonsmooth.paths.moments import moments
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def merge(shards, halving):

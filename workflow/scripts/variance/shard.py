@@ -2,10 +2,11 @@
 
 from functools import partial
 
-from nonsmooth import artifact, times
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.trajectories import gram
+from nonsmooth.paths import time_grids
+from nonsmooth.paths.ensembles import gram
+from nonsmooth.scenes.scene import Scene
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def shard(scene, first_time, horizon, points, step, part, seed, threads):
@@ -15,7 +16,7 @@ def shard(scene, first_time, horizon, points, step, part, seed, threads):
     -------
     xarray.Dataset
     """
-    tau = times.logarithmic(first_time, horizon, points)
+    tau = time_grids.logarithmic(first_time, horizon, points)
     first, paths = part
     scene = Scene(**scene)
     return artifact.dataset(

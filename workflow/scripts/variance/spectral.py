@@ -1,9 +1,10 @@
 """w and v of figure 2a by spectral elements, the reference."""
 
-from nonsmooth import artifact, times
-from nonsmooth.jobs import produce
-from nonsmooth.scene import Scene
-from nonsmooth.variance import asymptotic_variance, variance
+from nonsmooth.paths import time_grids
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.variance import asymptotic_variance, variance
+from reproduction import artifact
+from reproduction.jobs import produce
 
 
 def reference(scene, first_time, horizon, points, tolerance):
@@ -14,7 +15,7 @@ def reference(scene, first_time, horizon, points, tolerance):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    tau = times.logarithmic(first_time, horizon, points)
+    tau = time_grids.logarithmic(first_time, horizon, points)
     solution = variance(scene, tau, tol=tolerance)
     gamma2 = asymptotic_variance(scene)
     return artifact.dataset(

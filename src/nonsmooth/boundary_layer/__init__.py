@@ -1,0 +1,1 @@
+"""The boundary layer at a threshold."""

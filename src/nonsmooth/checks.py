@@ -1,0 +1,30 @@
+"""What every function asks of its arguments."""
+
+from numbers import Integral
+
+import numpy as np
+
+from nonsmooth.errors import SceneError
+
+
+def require_increasing(name, values):
+    """Refuse what is not a list of increasing positive finite numbers."""
+    values = np.asarray(values, dtype=float)
+    if values.ndim != 1 or not (
+        values.size and values[0] > 0 and np.all(np.diff(values) > 0) and np.isfinite(values[-1])
+    ):
+        raise SceneError(f"the {name} must be positive and increase; sort them")
+
+
+def require_count(name, value):
+    """Refuse what is not a whole positive number."""
+    if not (isinstance(value, Integral) and value > 0):
+        raise SceneError(
+            f"the simulation needs {name} > 0, a whole number, got {value!r}; choose one"
+        )
+
+
+def require_positive(name, value):
+    """Refuse what is not a positive finite number."""
+    if not 0 < value < np.inf:
+        raise SceneError(f"the simulation needs {name} > 0, got {value}; choose a positive number")

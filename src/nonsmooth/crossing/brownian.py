@@ -1,0 +1,229 @@
+"""Threshold crossing of Brownian motion that starts at 0 between two levels.
+
+With the distances near <= far of the levels from 0, L = near + far, r = sqrt(2 T) and
+z = pi^2 T / (2 L^2), it stays between them up to T with the probability
+
+    4/pi sum_{odd n} sin(n pi near/L)/n exp(-n^2 z)                                    (modes)
+  = erf(near/r) - sum_k (-1)^k [erfc((k L + far)/r) - erfc(((k+1) L + near)/r)]        (images),
+
+the paper's series and its theta dual. Each is used where nothing cancels: the images where
+near >= sqrt(T), or L >= 10 sqrt(T) and the sum is below rounding; the modes elsewhere, where the
+terms that count have one sign.
+"""
+
+import numpy as np
+from scipy.special import erf, erfc, erfcx
+
+from nonsmooth.errors import SceneError
+from nonsmooth.scenes.thresholds import bounds
+
+# What is left out is below 1e-20 of the first term: exp(-(33^2 - 1) z) where L = 10 sqrt(T), and
+# exp(-(11^2 - 1)/2) where near = far = sqrt(T).
+_MODES = range(1, 33, 2)
+_IMAGES = range(5)
+_REACH = 100  # in sqrt(T); levels beyond are reached with probability exp(-5000), 0 in double
+
+
+def brownian_crossing(b, T, lower=None):
+    """Probability that W reaches b or the lower level before T, W_star of eq. (defFexplicit).
+
+    Parameters
+    ----------
+    b : array_like
+        Upper level, "1"; positive, inf if there is none.
+    T : array_like
+        Horizon, "1"; non-negative and finite.
+    lower : array_like, optional
+        Lower level, "1"; negative, -inf if there is none. -b unless given.
+
+    Returns
+    -------
+    numpy.ndarray
+        Of the shape that the arguments broadcast to. The relative error is some units in the
+        last place, and as many times the exponent where the value is exponentially small; the
+        value is 0 at T = 0 and where it is below the smallest double.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range.
+    """
+    path = _Path(b, T, lower)
+    early = path.tail(path.near) + path.reflected(path.tail)
+    return path.chosen(early, 1 - path.modes(lambda n: 4 / (np.pi * n)), 0.0)
+
+
+def brownian_exit(b, T, lower):
+    """Probability that W reaches b before T and before the lower level.
+
+    Parameters
+    ----------
+    b, lower : float
+        lower < 0 < b, each possibly infinite.
+    T : numpy.ndarray
+        Horizons, "1"; at 0 nothing has been reached.
+
+    Returns
+    -------
+    numpy.ndarray
+        With an absolute error of some units in the last place of 1.
+    """
+    T = np.asarray(T, dtype=float)
+    if np.isinf(b):
+        return np.zeros(T.shape)
+    root = np.sqrt(2 * np.maximum(T, np.finfo(float).tiny))
+    if np.isinf(lower):
+        return erfc(b / root)
+    width = b - lower
+    late = -lower / width - _waves(b, T, width, lambda k: 2 / (np.pi * k))
+    early = sum(erfc((k + b) / root) - erfc((k + 2 * width - b) / root) for k in _turns(width))
+    return np.where(width**2 > T, early, late)
+
+
+def brownian_exit_density(b, T, lower):
+    """Density in T of `brownian_exit`, with a relative error of some units in the last place.
+
+    Parameters are those of `brownian_exit`; T is positive.
+
+    Returns
+    -------
+    numpy.ndarray
+    """
+    T = np.asarray(T, dtype=float)
+    if np.isinf(b):
+        return np.zeros(T.shape)
+
+    def rate(distance):
+        return distance / np.sqrt(2 * np.pi * T**3) * np.exp(-(distance**2) / (2 * T))
+
+    if np.isinf(lower):
+        return rate(b)
+    width = b - lower
+    late = _waves(b, T, width, lambda k: np.pi * k / width**2)
+    early = sum(rate(k + b) - rate(k + 2 * width - b) for k in _turns(width))
+    return np.where(width**2 > T, early, late)
+
+
+def _turns(width):
+    """Ways to and fro; what is left out is below exp(-100) for T < width^2."""
+    return 2 * width * np.arange(8)
+
+
+def _waves(b, T, width, weight):
+    """Sum over the eigenfunctions; what is left out is below exp(-300) for T > width^2."""
+    return sum(
+        weight(k) * np.sin(k * np.pi * b / width) * np.exp(-T * (k * np.pi / width) ** 2 / 2)
+        for k in range(1, 9)
+    )
+
+
+def brownian_survival(b, T, lower=None):
+    """Probability that W stays below b and above the lower level up to T, 1 - W_star.
+
+    Parameters and errors are those of `brownian_crossing`, and so is the relative accuracy,
+    however small the value.
+
+    Returns
+    -------
+    numpy.ndarray
+    """
+    path = _Path(b, T, lower)
+    early = erf(path.near / np.sqrt(2 * path.T)) - path.reflected(path.tail)
+    return path.chosen(early, path.modes(lambda n: 4 / (np.pi * n)), 1.0)
+
+
+def brownian_first_passage_density(b, T, lower=None):
+    """Density in T of the time when W first reaches b or the lower level, d W_star / d T.
+
+    Parameters and errors are those of `brownian_crossing`, and so is the relative accuracy,
+    however small the value.
+
+    Returns
+    -------
+    numpy.ndarray
+    """
+    path = _Path(b, T, lower)
+    early = path.rate(path.near) + path.reflected(path.rate)
+    return path.chosen(early, path.modes(lambda n: 2 * np.pi * n / path.width**2), 0.0)
+
+
+class _Path:
+    """Levels and horizon, broadcast and checked, and the terms of the two series."""
+
+    def __init__(self, b, T, lower):
+        b = np.asarray(b, dtype=float)
+        lower = -b if lower is None else np.asarray(lower, dtype=float)
+        b, lower, T = np.broadcast_arrays(b, lower, np.asarray(T, dtype=float))
+        # what is not a number stays that
+        for wrong, need in (
+            (b <= 0, "an upper level b > 0"),
+            (lower >= 0, "a lower level < 0"),
+            ((T < 0) | np.isinf(T), "a finite horizon T >= 0"),
+        ):
+            if np.any(wrong):
+                raise SceneError(f"Brownian motion from 0 needs {need}; choose such a one")
+        self.began = T != 0
+        self.T = np.where(T == 0, 1.0, T)
+        near, far = np.minimum(b, -lower), np.maximum(b, -lower)
+        reach = _REACH * np.sqrt(self.T)
+        self.near, self.far = np.minimum(near, reach), np.minimum(far, reach)
+        self.width = self.near + self.far
+
+    def tail(self, distance):
+        """Probability that |W(T)| exceeds a distance."""
+        return _decay(distance * (distance / self.T) / 2, erfcx(distance / np.sqrt(2 * self.T)))
+
+    def rate(self, distance):
+        """Density of the first passage of one level."""
+        factor = distance / self.T / np.sqrt(2 * np.pi * self.T)
+        return _decay(distance * (distance / self.T) / 2, factor)
+
+    def reflected(self, term):
+        """Sum a term over the images."""
+        return sum(
+            (-1) ** k * (term(k * self.width + self.far) - term((k + 1) * self.width + self.near))
+            for k in _IMAGES
+        )
+
+    def modes(self, weight):
+        """Sum of the eigenfunctions' terms, the first one's decay taken out."""
+        z = np.pi**2 / 2 * (self.T / self.width / self.width)
+        place = np.pi * (self.near / self.width)
+        terms = (weight(n) * np.sin(n * place) * np.exp((1 - n * n) * z) for n in _MODES)
+        return _decay(z, sum(terms))
+
+    def chosen(self, images, modes, at_once):
+        """Take the series that loses nothing, or the value at T = 0."""
+        by_images = (self.near**2 >= self.T) | (self.width**2 >= 100 * self.T)
+        return np.where(self.began, np.where(by_images, images, modes), at_once)
+
+
+def _decay(exponent, factor):
+    """Return factor exp(-exponent), which may be a double where the exponential is none."""
+    half = np.exp(-exponent / 2)
+    return half * (factor * half)
+
+
+def asymptotic_crossing(threshold, horizons, variance, variance_error):
+    """W_star of a threshold over gamma, and the error it inherits from gamma^2.
+
+    Parameters
+    ----------
+    threshold : float or (float, float)
+        As for `thresholds.bounds`.
+    horizons : array_like, shape (k,)
+        T, "1".
+    variance, variance_error : float
+        gamma^2 and its error.
+
+    Returns
+    -------
+    value, error : numpy.ndarray, shape (k,)
+    """
+    lower, upper = bounds(threshold)
+    # W crosses b/gamma by T as it crosses b by gamma^2 T
+    value, below, above = (
+        brownian_crossing(upper, max(variance + shift, 0.0) * np.asarray(horizons), lower)
+        for shift in (0.0, -variance_error, variance_error)
+    )
+    return value, np.maximum(np.abs(above - value), np.abs(value - below)) + 4e-16

@@ -1,0 +1,1 @@
+"""First passage without Monte Carlo."""

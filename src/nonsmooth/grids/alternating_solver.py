@@ -1,0 +1,218 @@
+"""The Poisson equation on large tensor grids, by alternating directions and Krylov spaces."""
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from nonsmooth.errors import ToleranceError
+from nonsmooth.grids.generator import assemble
+from nonsmooth.grids.solvers import EVEN, ODD, factorise
+from nonsmooth.scenes.models import x
+
+_DEPTH = 14.0  # of the box in the norm of residuals, that of a normal density
+_KRYLOV = 150  # vectors kept by GMRES
+_RESTARTS = 4
+
+
+class Split:
+    """Solver by alternating directions and GMRES, for scenes with colored noise.
+
+    Functions are arrays of the shape (forcing eta, oscillator, zeta).
+
+    Parameters
+    ----------
+    scene, axes, mirrored
+        As for `Direct`.
+    shift : float
+        The number a of the preconditioner, a rate between those of L and of T.
+
+    Attributes
+    ----------
+    iterations : int
+        Of the last solution.
+    most : int
+        Iterations after which to give up.
+    """
+
+    def __init__(self, scene, axes, mirrored, shift):
+        noise = {symbol: axes[symbol] for symbol in scene.noise.drift}
+        noise = {symbol: axes[symbol] for symbol in axes if symbol in noise}
+        forcing, *own = noise
+        rest = {symbol: axes[symbol] for symbol in axes if symbol not in noise}
+        self.mirrored = mirrored
+        self.forcing = len(axes[forcing].nodes)
+        self.own = int(np.prod([len(axes[symbol].nodes) for symbol in own]))
+        self.mechanics = int(np.prod([len(axis.nodes) for axis in rest.values()]))
+        self.kept = self.forcing // 2 if mirrored else self.forcing
+        self.shape = (self.kept, self.mechanics, self.own)
+
+        L = assemble(scene, noise).toarray()
+        half = L.shape[0] // 2
+        self.noise = (
+            {sign: L[:half, :half] + sign * L[:half, half:][:, ::-1] for sign in (ODD, EVEN)}
+            if mirrored
+            else {ODD: L, EVEN: L}
+        )
+        T = assemble(scene, {forcing: axes[forcing]} | rest, equations=rest)
+        size = self.mechanics
+        self.transport = [
+            T[i * size : (i + 1) * size, i * size : (i + 1) * size].tocsr()
+            for i in range(self.kept)
+        ]
+        self.shift, self.most = shift, _KRYLOV * _RESTARTS
+        self._resolvents = [factorise(shift * sp.eye_array(size) - t) for t in self.transport]
+        self._noise_factors = {
+            sign: scipy.linalg.lu_factor(shift * np.eye(len(part)) - part)
+            for sign, part in self.noise.items()
+        }
+        # a measure near the origin that a constant is recovered with
+        masses = scipy.linalg.null_space(self.noise[EVEN].T, rcond=1e-9)[:, 0]
+        masses = masses.reshape(self.kept, 1, self.own) / masses.sum()
+        near = _bump(rest)
+        self.measure = (masses * near[None, :, None]).ravel()
+        self.measure /= self.measure.sum()
+        # errors of means are bounded by the norm weighted with the density, not by the plain one,
+        # which is governed by the corners of the box; between walls the density does not fall
+        flat = scene.mechanics.argument if scene.mechanics.argument == x else None
+        self._scale = self.fold(np.sqrt(_normal(axes, flat)))
+
+    def unfold(self, half, parity):
+        """Continue a function from half of the grid to all of it."""
+        values = half.reshape(self.shape)
+        if self.mirrored:
+            values = np.concatenate([values, parity * values[::-1, ::-1, ::-1]])
+        return values.transpose(0, 2, 1).ravel()
+
+    def fold(self, whole):
+        """Restrict a function to the half of the grid that is solved on."""
+        values = whole.reshape(self.forcing, self.own, self.mechanics)
+        return np.ascontiguousarray(values[: self.kept].transpose(0, 2, 1)).ravel()
+
+    def _by_noise(self, values, parity, apply):
+        """Apply an operator on the noise; it conserves the parity in the other variables."""
+        columns = values.transpose(0, 2, 1).reshape(-1, self.mechanics)
+        if not self.mirrored:
+            result = apply(parity, columns)
+        else:
+            even = (columns + columns[:, ::-1]) / 2
+            result = apply(parity, even) + apply(-parity, columns - even)
+        return result.reshape(self.kept, self.own, self.mechanics).transpose(0, 2, 1)
+
+    def generator(self, values, parity, adjoint=False):
+        """Apply A, or its transpose, to a function."""
+        values = values.reshape(self.shape)
+        result = np.stack(
+            [(t.T if adjoint else t) @ part for t, part in zip(self.transport, values, strict=True)]
+        )
+        noise = {sign: part.T for sign, part in self.noise.items()} if adjoint else self.noise
+        result += self._by_noise(values, parity, lambda sign, columns: noise[sign] @ columns)
+        return result.ravel()
+
+    def _precondition(self, values, parity, adjoint):
+        """Apply 2 a (a - T)^-1 (a - L)^-1, or its transpose, in the place of -A^-1."""
+
+        def noise(values):
+            return self._by_noise(
+                values,
+                parity,
+                lambda sign, columns: scipy.linalg.lu_solve(
+                    self._noise_factors[sign], columns, trans=int(adjoint)
+                ),
+            )
+
+        def transport(values):
+            return np.stack(
+                [
+                    lu.solve(part, trans="T" if adjoint else "N")
+                    for lu, part in zip(self._resolvents, values, strict=True)
+                ]
+            )
+
+        values = values.reshape(self.shape)
+        values = noise(transport(values)) if adjoint else transport(noise(values))
+        return 2 * self.shift * values.ravel()
+
+    def _gmres(self, right, parity, accuracy, adjoint=False):
+        """Solve (-A + 1 measure') u = f: the measure's integral of u is then the mean of f."""
+        ones, measure, scale = np.ones(right.size), self.measure, self._scale
+        if adjoint:
+            ones, measure, scale = measure, ones, ones
+        odd = self.mirrored and parity == ODD
+
+        def apply(scaled):
+            values = scaled / scale
+            result = -self.generator(values, parity, adjoint)
+            return scale * (result if odd else result + ones * (measure @ values))
+
+        def precondition(scaled):
+            return scale * self._precondition(scaled / scale, parity, adjoint)
+
+        self.iterations = 0
+
+        def count(_residual):
+            self.iterations += 1
+            if self.iterations > self.most:
+                raise self._failure(accuracy)
+
+        shape = (right.size, right.size)
+        solution, failed = spla.gmres(
+            spla.LinearOperator(shape, apply, dtype=float),
+            scale * right,
+            M=spla.LinearOperator(shape, precondition, dtype=float),
+            rtol=accuracy,
+            restart=_KRYLOV,
+            maxiter=_RESTARTS,
+            callback=count,
+            callback_type="pr_norm",
+        )
+        if failed:
+            raise self._failure(accuracy)
+        return solution / scale
+
+    def _failure(self, accuracy):
+        return ToleranceError(
+            f"the Poisson equation was not solved to {accuracy:.0e} in {self.most} iterations, as "
+            "in scenes that mix slowly; loosen tol or use Monte Carlo"
+        )
+
+    def solve(self, values, parity, accuracy):
+        """Solve -A u = f - E f; see `Direct.solve`.
+
+        Parameters
+        ----------
+        accuracy : float
+            Norm of the residual, weighted with a normal density, relative to that of f.
+
+        Raises
+        ------
+        ToleranceError
+            If the iteration does not converge.
+        """
+        solution = self._gmres(values, parity, accuracy)
+        if self.mirrored and parity == ODD:
+            return solution, 0.0
+        return solution, float(self.measure @ solution)
+
+    def stationary(self, accuracy):
+        """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
+        masses = self.unfold(self._gmres(self.measure, EVEN, accuracy, adjoint=True), EVEN)
+        return masses / masses.sum()
+
+
+def _normal(axes, flat):
+    """Evaluate a normal density, exp(-_DEPTH) at the box's ends, but flat in one variable."""
+    total = np.ones(1)
+    for symbol, axis in axes.items():
+        depth = 0 if symbol == flat else _DEPTH
+        total = np.kron(total, np.exp(-depth * (axis.nodes / axis.edges[-1]) ** 2))
+    return total
+
+
+def _bump(rest):
+    """Masses of a narrow measure around the origin of the oscillator's variables."""
+    total = np.ones(1)
+    for axis in rest.values():
+        width = axis.nodes[-1] / 4
+        total = np.kron(total, axis.weights * np.exp(-((axis.nodes / width) ** 2) / 2))
+    return total

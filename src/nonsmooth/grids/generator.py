@@ -1,0 +1,103 @@
+"""The generator A_n (eq. inf-gen) of any scene on a tensor grid of spectral elements.
+
+Everything is read from the scene's own drift: coefficients are evaluated at the nodes, and on the
+faces of discontinuous elements, where their sign decides from which side a value is taken.
+"""
+
+from functools import reduce
+
+import numpy as np
+import scipy.sparse as sp
+import sympy
+
+from nonsmooth.scenes.formulas import vectorised
+
+
+def evaluate(expression, axes, points=None):
+    """Evaluate a formula on a tensor grid.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+    axes : dict
+        Maps the symbols of the variables, in order, to their `Axis`.
+    points : dict, optional
+        Points that replace an axis' nodes.
+
+    Returns
+    -------
+    numpy.ndarray, shape (number of grid points,)
+    """
+    where = [(points or {}).get(symbol, axis.nodes) for symbol, axis in axes.items()]
+    grid = np.meshgrid(*where, indexing="ij")
+    return vectorised(expression, tuple(axes))(*grid).ravel()
+
+
+def start_row(scene, axes, side=1):
+    """Row vector that interpolates functions on a tensor grid at the start, or at its mirror image.
+
+    Parameters
+    ----------
+    scene : Scene
+    axes : dict
+        As for `evaluate`.
+    side : {1, -1}
+
+    Returns
+    -------
+    numpy.ndarray, shape (number of grid points,)
+    """
+    start = [side * scene.start.get(symbol.name, 0.0) for symbol in axes]
+    parts = [axis.interpolation(z) for axis, z in zip(axes.values(), start, strict=True)]
+    return reduce(np.kron, [part.toarray()[0] for part in parts])
+
+
+def assemble(scene, axes, equations=None):
+    """Assemble the generator, or the part of it that belongs to some of the equations.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    axes : dict
+        Maps symbols to `Axis`; the first varies slowest.
+    equations : iterable of sympy.Symbol, optional
+        The variables whose drift and diffusion are included; all unless given.
+
+    Returns
+    -------
+    scipy.sparse.csr_array, shape (grid points, grid points)
+        Its rows sum to zero.
+    """
+    drift = scene.numerical_drift()
+    size = [len(axis.nodes) for axis in axes.values()]
+    generator = sp.csr_array((np.prod(size), np.prod(size)))
+    for place, symbol in enumerate(axes):
+        if equations is not None and symbol not in equations:
+            continue
+        axis, rate = axes[symbol], sympy.sympify(drift[symbol])
+
+        def spread(matrix, place=place):
+            return _kron(size[:place], matrix, size[place + 1 :])
+
+        speed = evaluate(rate, axes)
+        generator += sp.diags_array(speed) @ spread(axis.slope)
+        if symbol == scene.noise.driven:
+            # where the drift leads inward, a condition at the end would make a layer there
+            inward = (speed * evaluate(symbol, axes) < 0).astype(float)
+            diffusion = spread(axis.curvature) + sp.diags_array(inward) @ spread(axis.release)
+            generator += scene.noise.sigma**2 / 2 * diffusion
+        if len(axis.faces):
+            across = evaluate(rate, axes, {symbol: axis.faces})
+            jump = spread(axis.jump)
+            for lift, side in (
+                (axis.lift_left, np.maximum(across, 0)),
+                (axis.lift_right, np.minimum(across, 0)),
+            ):
+                generator += spread(lift) @ (sp.diags_array(side) @ jump)
+    return generator.tocsr()
+
+
+def _kron(before, matrix, after):
+    factors = (sp.eye_array(int(np.prod(before))), matrix, sp.eye_array(int(np.prod(after))))
+    return reduce(lambda left, right: sp.kron(left, right, format="csr"), factors)

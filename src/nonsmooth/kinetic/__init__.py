@@ -1,0 +1,1 @@
+"""The kinetic equation between two thresholds."""

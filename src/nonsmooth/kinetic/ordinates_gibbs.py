@@ -1,0 +1,198 @@
+"""Discrete ordinates of the state (y, x) with white noise where all force has a potential.
+
+In L^2 of the Gibbs density exp(-2 C_b (y^2/2 + U_n) / sigma^2) noise and damping are symmetric and
+the motion is skew: in Hermite polynomials of y / s, s^2 = sigma^2 / (2 C_b), it raises a degree by
+s d_x and lowers it by s d_x - U_n' / s, minus the adjoint. Even degrees have continuous elements in
+x, odd ones the derivatives of these, discontinuous; both relations then hold exactly, and the grid
+is passive however coarse.
+"""
+
+import math
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.polynomial import legendre
+
+from nonsmooth.grids.elements import lagrange, lobatto
+from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.kinetic.ordinates_plane import DROPPED, PlaneOrdinates
+from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.models import x, y
+from nonsmooth.scenes.penalties import n as penalization
+
+# Hermite degrees; degree in x; ends of the elements relative to the distance of the walls, and
+# within a wall relative to its depth: of slabs, and of a march, which many nodes cost less
+_LEVELS = (
+    (12, 5, (0.3, 1.0), (0.5, 1.0)),
+    (16, 6, (0.3, 1.0), (0.5, 1.0)),
+    (18, 6, (0.2, 1.0), (0.25, 0.6, 1.0)),
+    (22, 6, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
+    (36, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+    (60, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+    (80, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+)
+
+
+def applies(scene):
+    """Whether the noise is white, all force but the damping has a potential, and g is g(x)."""
+    return (
+        scene.state == ("y", "x")
+        and scene.noise.kind == "white"
+        and scene.mechanics.in_potential
+        and y not in scene.numerical_observable().free_symbols
+    )
+
+
+def gibbs_ordinates(scene, ends, level):
+    """Discretise a scene to which this `applies`, with finite n and odd g and drift.
+
+    Parameters
+    ----------
+    scene : Scene
+    ends : dict
+        Half widths of the box.
+    level : int
+        Of resolution, from 0.
+
+    Returns
+    -------
+    PlaneOrdinates
+        Values are coefficients of the Hermite polynomials at nodes x > 0.
+    """
+    many, degree, *_ = _LEVELS[level]
+    edges = _edges(scene, ends[x], level)
+    gauss, weights = legendre.leggauss(degree)
+    smooth, rough = _nodes(edges, *lobatto(degree)[:2]), _nodes(edges, gauss, weights)
+    value, slope = _derived(edges, degree)
+    scale = scene.noise.sigma / math.sqrt(2 * scene.damping)
+    energy = scene.potential_expression + scene.mechanics.added_potential
+    energy = vectorised(energy.subs(penalization, scene.n), (x,))
+    force = -vectorised(scene.numerical_drift()[y].subs(y, 0), (x,))(rough[0])
+    masses = [w * np.exp((energy(0.0) - energy(at)) / scale**2) for at, w in (smooth, rough)]
+    up = scale * slope
+    down = up - (force / scale)[:, None] * value
+
+    def adjoint(matrix):
+        return matrix.T * masses[1] / masses[0][:, None]
+
+    raising, lowering = (up, -adjoint(down)), (down, -adjoint(up))
+    nodes = [at[len(at) // 2 :] for at, _ in (smooth, rough)]
+    g = [vectorised(scene.numerical_observable(), (x,))(at) for at in nodes]
+    where = scene.start.get("x", 0.0)
+    kept = [
+        _kept(f, m[len(m) // 2 :], at <= abs(where))
+        for f, m, at in zip(g, masses, nodes, strict=True)
+    ]
+    polynomials = _hermite(scene.start.get("y", 0.0) / scale, many)
+    at_start = [_at(where, edges, local) for local in (lobatto(degree)[0], gauss)]
+    generator, start = {}, {}
+    for parity in (ODD, EVEN):
+        blocks, row, moving, size = [[None] * many for _ in range(many)], [], [], 0
+        for k in range(many):
+            own = parity * (-1) ** k  # in x
+            row.append(polynomials[k] * _folded(at_start[k % 2], own))
+            if where == 0 and own == ODD:
+                row[-1] *= 0.0
+            centre = len(nodes[k % 2]) - row[-1].shape[1]  # 1 where x = 0 is left out
+            blocks[k][k] = -scene.damping * k * sp.eye_array(row[-1].shape[1])
+            moving.append(size + kept[k % 2] - centre)
+            size += row[-1].shape[1]
+            if k + 1 < many:
+                root = math.sqrt(k + 1)
+                blocks[k + 1][k] = sp.csr_array(root * _half(raising[k % 2], own))
+                blocks[k][k + 1] = sp.csr_array(root * _half(lowering[(k + 1) % 2], -own))
+        order = np.concatenate([*moving, np.delete(np.arange(size), np.concatenate(moving))])
+        generator[parity] = sp.block_array(blocks, format="csr")[order][:, order].tocsc()
+        start[parity] = np.hstack(row)[0][order]
+    above = masses[0][len(masses[0]) // 2 :]
+    way = math.sqrt((above @ g[0] ** 2) / above.sum()) / scene.damping
+    ones = (order < len(nodes[0])).astype(float)  # that of EVEN, the last
+    speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
+    return PlaneOrdinates(speeds, ones, way, size - len(speeds), generator, start)
+
+
+def _edges(scene, end, level):
+    """Edges on the walls, if they are within the box."""
+    _, _, inside, within = _LEVELS[level]
+    wall = scene.mechanics.penalty.at(scene.n)[0]
+    positive = min(wall, end) * np.array(inside)
+    if wall < end:
+        positive = np.append(positive, wall + (end - wall) * np.array(within))
+    return np.concatenate([-positive[::-1], [0.0], positive])
+
+
+def _nodes(edges, local, weights):
+    """Nodes of all elements and their weights; neighbours share a node at an end."""
+    half = np.diff(edges)[:, None] / 2
+    nodes = ((edges[1:] + edges[:-1])[:, None] / 2 + half * local).ravel()
+    weights = (half * weights).ravel()
+    if local[-1] < 1:
+        return nodes, weights
+    many = len(local)
+    kept = np.delete(np.arange(len(nodes)), np.arange(many, len(nodes), many))
+    shared = np.arange(many - 1, len(nodes) - 1, many)
+    weights[shared] += weights[shared + 1]
+    nodes[len(nodes) // 2 - 1] = 0.0
+    return nodes[kept], weights[kept]
+
+
+def _derived(edges, degree):
+    """Values and slopes, at the discontinuous nodes, of the continuous elements' polynomials."""
+    values, slopes = lagrange(lobatto(degree)[0], legendre.leggauss(degree)[0])
+    count = len(edges) - 1
+    found = np.zeros((2, count * degree, count * degree + 1))
+    for e, width in enumerate(np.diff(edges)):
+        here = slice(e * degree, (e + 1) * degree), slice(e * degree, (e + 1) * degree + 1)
+        found[0][here], found[1][here] = values, slopes * 2 / width
+    return found
+
+
+def _at(point, edges, local):
+    """Row that interpolates at a point, between nodes of either kind.
+
+    Near x = 0, without the node there: where g = 0, its value follows ill-conditioned from others.
+    """
+    count, many = len(edges) - 1, len(local)
+    stride = many - 1 if local[-1] == 1 else many
+    e = int(np.clip(np.searchsorted(edges, point, "right") - 1, 0, count - 1))
+    middle = count // 2
+    first, end = (middle - 1, middle + 1) if e in (middle - 1, middle) else (e, e + 1)
+    here = slice(first * stride, end * stride + many - stride)
+    nodes = _nodes(edges, local, np.ones(many))[0]
+    chosen = np.arange(len(nodes))[here]
+    chosen = chosen[nodes[chosen] != 0]
+    centre, half = (edges[end] + edges[first]) / 2, (edges[end] - edges[first]) / 2
+    row = np.zeros((1, len(nodes)))
+    scaled = (nodes[chosen] - centre) / half
+    row[0, chosen] = lagrange(scaled, np.array([(point - centre) / half]))[0][0]
+    return row
+
+
+def _folded(matrix, parity):
+    """Restrict the columns of a matrix to x >= 0, for functions of a parity in x."""
+    middle, centre = divmod(matrix.shape[1], 2)
+    right = matrix[:, middle:].copy()
+    right[:, centre:] += parity * matrix[:, :middle][:, ::-1]
+    return right[:, 1:] if centre and parity == ODD else right
+
+
+def _half(matrix, parity):
+    """Restrict to x >= 0 a matrix that changes the parity in x."""
+    middle, centre = divmod(matrix.shape[0], 2)
+    return _folded(matrix, parity)[middle + (centre if parity == EVEN else 0) :]
+
+
+def _kept(g, masses, near):
+    """Find the nodes that carry the mean of |g|, and those no farther than the start."""
+    flow = np.abs(g) * masses
+    order = np.argsort(flow)
+    carrying = np.cumsum(flow[order]) > DROPPED * flow.sum()
+    return np.union1d(order[carrying], np.flatnonzero(near & (g != 0)))
+
+
+def _hermite(point, many):
+    """Orthonormal Hermite polynomials of a standard normal variable."""
+    values = [1.0, point]
+    for k in range(1, many - 1):
+        values.append((point * values[k] - math.sqrt(k) * values[k - 1]) / math.sqrt(k + 1))
+    return values

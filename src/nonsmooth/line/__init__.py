@@ -1,0 +1,1 @@
+"""Scenes with one state variable."""

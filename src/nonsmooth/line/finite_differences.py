@@ -1,0 +1,149 @@
+"""The paper's finite-difference scheme (its appendix C), with the indices mended.
+
+Backward Euler in time, centred differences in space on [-L, L], one-sided Neumann rows. The
+right-hand sides use W^{k-1} and V^{k-1}, not step k as printed, and the source of V is
+(D W^k)^2. First order in time; second order in space on a grid fitted to the kinks at +-1/n.
+"""
+
+import numpy as np
+from scipy.linalg.lapack import dgttrf, dgttrs
+
+from nonsmooth.errors import SceneError
+from nonsmooth.scenes import models
+from nonsmooth.scenes.formulas import vectorised
+
+
+def moments(scene, times, half_width, nodes, time_step):
+    """Solve eqs. (PDEw) and (PDEv) and return w and v at the starting point.
+
+    Parameters
+    ----------
+    scene : Scene
+        With state y, a finite n, and a starting point among the nodes.
+    times : array_like, shape (t,)
+        Output times, multiples of `time_step`.
+    half_width : float
+        L, "1".
+    nodes : int
+        N, odd, so that 0 is a node.
+    time_step : float
+        Delta t, "1".
+
+    Returns
+    -------
+    w, v : numpy.ndarray, shape (t,)
+
+    Raises
+    ------
+    SceneError
+        If the scene has another state, or the grid does not fit.
+    """
+    y, lower, main, upper, source = system(scene, half_width, nodes, time_step)
+    start = scene.start.get("y", 0.0)
+    node = int(np.argmin(np.abs(y - start)))
+    width = y[1] - y[0]
+    if abs(y[node] - start) > 1e-9 * width:
+        raise SceneError(
+            f"the paper's scheme starts from a node, and y = {start:g} is none; change the grid"
+        )
+    outputs = np.rint(np.asarray(times) / time_step).astype(int)
+    if not np.allclose(outputs * time_step, times, rtol=1e-9):
+        raise SceneError("the output times are not multiples of the time step; change either")
+    *factors, info = dgttrf(lower[1:], main, upper[:-1])
+    if info:
+        raise SceneError("the paper's scheme is singular on this grid; refine it")
+
+    def solve(right):
+        right[[0, -1]] = 0.0  # Neumann rows
+        return dgttrs(*factors, right)[0]
+
+    w, v, slope = np.zeros((3, nodes))
+    history = {0: (0.0, 0.0)}
+    for k in range(1, outputs[-1] + 1):
+        w = solve(source + w)
+        slope[1:-1] = (w[2:] - w[:-2]) / (2 * width)
+        v = solve(time_step * scene.noise.sigma**2 * slope**2 + v)
+        history[k] = w[node], v[node]
+    return tuple(np.array([history[k] for k in outputs]).T)
+
+
+def system(scene, half_width, nodes, time_step):
+    """Assemble the matrix M_Dt and the source Dt G_i.
+
+    Parameters
+    ----------
+    scene, half_width, nodes, time_step
+        As for `moments`.
+
+    Returns
+    -------
+    y : numpy.ndarray, shape (nodes,)
+        The grid.
+    lower, main, upper : numpy.ndarray, shape (nodes,)
+        Row i of M_Dt has lower[i], main[i], upper[i]; lower[0] and upper[-1] are outside.
+    source : numpy.ndarray, shape (nodes,)
+
+    Raises
+    ------
+    SceneError
+        If the scene has another state, no node is at 0, or the cell Peclet number is above 1.
+    """
+    if scene.state != ("y",):
+        raise SceneError("the paper's scheme is one-dimensional; it takes the state (y)")
+    if nodes % 2 == 0:
+        raise SceneError(f"the paper's scheme needs an odd number of nodes, got {nodes}; add one")
+    y = np.linspace(-half_width, half_width, nodes)
+    width = y[1] - y[0]
+    speed = -vectorised(scene.numerical_drift()[models.y], (models.y,))(y)
+    peclet = np.max(np.abs(speed)) * width / scene.noise.sigma**2
+    if not peclet <= 1:
+        raise SceneError(
+            f"the paper's scheme oscillates with {nodes} nodes: the cell Peclet number "
+            f"|b| Delta y / sigma^2 reaches {peclet:.3g}, above 1; use more nodes"
+        )
+    diffusion = scene.noise.sigma**2 / width**2
+    lower = -time_step / 2 * (diffusion + speed / width)
+    upper = -time_step / 2 * (diffusion - speed / width)
+    main = np.full(nodes, 1 + time_step * diffusion)
+    main[[0, -1]] = 1 / width, -1 / width
+    lower[-1], upper[0] = 1 / width, -1 / width
+    return (
+        y,
+        lower,
+        main,
+        upper,
+        time_step * vectorised(scene.numerical_observable(), (models.y,))(y),
+    )
+
+
+def moments_with_error(scene, times, half_width, nodes, time_step):
+    """Return w, v and an error estimate of each.
+
+    The solution is repeated with twice the time step, with twice the mesh width, and with that
+    on half the domain. The scheme is of first order in time, so that the first difference is the
+    error's leading term; in space it is at least of first order, whatever the position of the
+    kinks, so that the second difference bounds it; the domain's error falls faster than
+    exponentially with L. The sum of the differences is doubled to cover the higher orders.
+
+    Parameters
+    ----------
+    scene, times, half_width, nodes, time_step
+        As for `moments`; `times` multiples of twice `time_step`, (nodes - 1)/8 an integer, the
+        start within half of the domain.
+
+    Returns
+    -------
+    w, v, w_error, v_error : numpy.ndarray, shape (t,)
+
+    Raises
+    ------
+    SceneError
+        As for `moments`, for each of the grids.
+    """
+    fine = np.array(moments(scene, times, half_width, nodes, time_step))
+    slow = np.array(moments(scene, times, half_width, nodes, 2 * time_step))
+    wide = np.array(moments(scene, times, half_width, (nodes + 1) // 2, time_step))
+    near = np.array(moments(scene, times, half_width / 2, (nodes + 3) // 4, time_step))
+    error = 2 * (np.abs(slow - fine) + np.abs(wide - fine) + np.abs(near - wide))
+    error += np.finfo(float).eps
+    return (*fine, *error)

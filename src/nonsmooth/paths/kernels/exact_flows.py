@@ -1,0 +1,151 @@
+"""Exact flows of the piecewise-linear parts of the equations of motion, without branches.
+
+They are exact for every penalization, infinity included, which makes every splitting built
+on them stable for every n at every step; a loop over lanes vectorises them.
+"""
+
+import math
+
+import numpy as np
+
+from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.vector_math import (
+    arctan2,
+    decay,
+    expm1,
+    fma,
+    like,
+    log1p,
+    maximum,
+    minimum,
+    sincos,
+    where,
+)
+
+
+@inlined
+def _relaxed(t, rate, inverse):
+    """(1 - exp(-rate t)) / rate: how far z' = -rate z goes in t per unit of initial speed."""
+    return -expm1(-rate * t) * inverse
+
+
+@inlined
+def relax(z, t, drive, rate):
+    """Flow of z' = drive - rate z over a time t."""
+    rate = _nonzero(rate)
+    return fma(drive - rate * z, _relaxed(t, rate, like(z, 1.0) / rate), z)
+
+
+@inlined
+def _nonzero(rate):
+    """Return a rate to divide by; the least one makes the exponential a straight line."""
+    return maximum(rate, like(rate, 1e-15))
+
+
+@inlined
+def _arrival(gap, speed, rate, inverse):
+    """Time to cover a gap at whose end the speed is `speed`, having decayed at a rate.
+
+    Infinite if the motion dies out before the end; 0 if the end has been passed.
+    """
+    time = log1p(rate * gap / speed) * inverse
+    zero = like(gap, 0.0)
+    return where(gap > zero, where(speed > zero, time, like(gap, np.inf)), zero)
+
+
+@inlined
+def penalised(z, t, drive, rate, knot, inner, outer):
+    """Flow of z' = drive - rate z - phi_n'(z) over a time t.
+
+    phi_n' is odd with slope `inner` up to `knot` and `outer` beyond. The right-hand side is
+    continuous and decreasing in z, so that z moves monotonically through at most three pieces.
+    Speeds are taken relative to those at the knots, which stiff pieces do not swallow.
+    """
+    near, far = _nonzero(rate + inner), _nonzero(rate + outer)
+    inverse_near, inverse_far = like(z, 1.0) / near, like(z, 1.0) / far
+    within = minimum(maximum(z, -knot), knot)
+    speed = drive - near * within - far * (z - within)
+    side = math.copysign(like(z, 1.0), speed)
+    z, drive = side * z, side * drive  # now it moves to the right
+    first_speed, last_speed = fma(near, knot, drive), fma(-near, knot, drive)
+    first = _arrival(-knot - z, first_speed, far, inverse_far)
+    entry = maximum(z, -knot)
+    last = first + _arrival(knot - entry, last_speed, near, inverse_near)
+    before, between = t < first, t < last
+    place = where(before, z, where(between, entry, maximum(z, knot)))
+    left = t - where(before, like(z, 0.0), where(between, first, last))
+    ahead = where(before, -knot, knot) - place
+    inside = between & (not before)
+    decay, inverse = where(inside, near, far), where(inside, inverse_near, inverse_far)
+    speed = fma(decay, ahead, where(before, first_speed, last_speed))
+    return side * fma(speed, _relaxed(left, decay, inverse), place)
+
+
+@inlined
+def at_rest(z, t, knot, inner):
+    """Flow of z' = -phi_n'(z) for dry friction: constant speed 1, then exponential decay."""
+    size = abs(z)
+    late = maximum(t - maximum(size - knot, like(z, 0.0)), like(z, 0.0))
+    return math.copysign(maximum(size - t, minimum(size, knot) * decay(inner * late)), z)
+
+
+@inlined
+def dry_friction(z, t, drive, rate):
+    """Flow of z' in drive - rate z - Sgn(z) over a time t: sticks at 0 while |drive| <= 1."""
+    one = like(z, 1.0)
+    rate = _nonzero(rate)
+    side, size = math.copysign(one, z), abs(z)
+    speed = one - side * drive  # towards 0, and there
+    need = _arrival(size, speed, rate, one / rate)
+    slips = t < need
+    place = where(slips, size, size * like(z, 0.0))  # not a number stays one
+    slip = side * drive - minimum(maximum(side * drive, -one), one)
+    outward = where(slips, -fma(rate, size, speed), slip)
+    left = where(slips, t, t - need)
+    return side * fma(outward, _relaxed(left, rate, one / rate), place)
+
+
+@inlined
+def confined(z, t, drive):
+    """Flow of z' = drive reflected in the sense of Skorokhod: the projection on [-1, 1]."""
+    return minimum(maximum(fma(drive, t, z), like(z, -1.0)), like(z, 1.0))
+
+
+@inlined
+def spring_contact(y, x, t, omega):
+    """Flow of x' = y, y' = -omega^2 (x - proj x): free flight between two elastic walls.
+
+    Every orbit is periodic: half a period is a flight from wall to wall, which takes 2/speed,
+    and a contact, which takes pi/omega. The state is mapped to its time on the orbit and back.
+    """
+    zero, one, pi = like(x, 0.0), like(x, 1.0), like(x, math.pi)
+    side = math.copysign(one, where(abs(x) > one, x, y))
+    depth = maximum(side * x - one, zero)
+    bend = omega * depth
+    speed = maximum(math.sqrt(fma(bend, bend, y * y)), like(x, 1e-18))
+    flight = like(x, 2.0) / speed
+    in_contact = flight + arctan2(bend, side * y) / omega
+    phase = t + where(depth > zero, in_contact, (side * x + one) / speed)
+    half = flight + pi / omega
+    turns = np.floor(phase / half)
+    phase = fma(-turns, half, phase)
+    odd = turns - like(x, 2.0) * np.floor(turns * like(x, 0.5)) > zero
+    sine, cosine = sincos(minimum(maximum(omega * (phase - flight), zero), pi))
+    hits = phase > flight
+    ahead = where(hits, fma(speed, sine / omega, one), fma(speed, phase, -one))
+    along = where(hits, speed * cosine, speed)
+    turned = where(odd, -side, side)
+    straight = fma(y, t, x)
+    free = (depth == zero) & (abs(straight) <= one)
+    return where(free, y, turned * along), where(free, straight, turned * ahead)
+
+
+@inlined
+def elastic_impact(y, x, t):
+    """Flow of x' = y on [-1, 1] with y -> -y at the walls: a straight line, folded."""
+    one, two = like(x, 1.0), like(x, 2.0)
+    straight = fma(y, t, x)
+    folds = np.floor((straight + one) / two)
+    folded = fma(-two, folds, straight)
+    odd = folds - two * np.floor(folds / two) > like(x, 0.0)
+    return where(odd, -y, y), where(odd, -folded, folded)

@@ -1,0 +1,128 @@
+"""A panel: the paths of one block side by side, one lane each, in arrays that fit a core's cache.
+
+All loops over lanes are without branches and calls, so that the compiler vectorises them. Time
+integrals gather in working precision for a few steps and then in double precision.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from nonsmooth.paths.kernels.compilation import inlined, kernel
+from nonsmooth.paths.kernels.random_numbers import BLOCK, generator_words
+from nonsmooth.paths.kernels.vector_math import larger, smaller
+from nonsmooth.scenes.models import STATE_VARIABLES
+
+FLUSH = 64  # steps between additions in double precision
+
+_CACHE_LINE = 64  # bytes
+# A row's width is an odd number of cache lines, so that equal places in two rows never share a
+# cache set.
+WIDTH = 1008
+
+# Rows of `data`: four normal numbers, the state, scratch, what the step adds to int g, and
+# since the last flush int g, its martingale part and that part's quadratic variation; int g at
+# the last flush, max |int g|, int g one step earlier, and its extremes where these are followed.
+STATE = ZETA, ETA, Y, X = 4, 5, 6, 7
+WORK = 8
+GAIN, DELTA, MARTINGALE, VARIATION, BASE, PEAK, BEFORE, LOW, HIGH = range(16, 25)
+ROWS = 25
+# Rows of `total`: int g, martingale and variation up to the last flush.
+TOTAL_DELTA, TOTAL_MARTINGALE, TOTAL_VARIATION = range(3)
+
+
+class Panel(NamedTuple):
+    """Arrays of one block of paths, one lane each.
+
+    The kernels see them with a shape that the compiler knows, so that it need not
+    ask whether rows overlap.
+
+    Attributes
+    ----------
+    words : uint32 (4, WIDTH)
+        The generators' states.
+    data : float32 or float64 (ROWS, WIDTH)
+    total : float64 (3, WIDTH)
+    """
+
+    words: np.ndarray
+    data: np.ndarray
+    total: np.ndarray
+
+
+def new_panel(scene, seed, block, precision="float32"):
+    """Return the panel of a block at time 0.
+
+    Parameters
+    ----------
+    scene : Scene
+    seed : int or tuple
+    block : int
+    precision : {"float32", "float64"}
+    """
+    data = _aligned(ROWS, precision)
+    for row, symbol in zip(STATE, STATE_VARIABLES, strict=True):
+        data[row] = scene.start.get(symbol.name, 0.0)
+    words = _aligned(4, "uint32")
+    words[:, :BLOCK] = generator_words(scene, seed, block)
+    return Panel(words, data, _aligned(3, "float64"))
+
+
+def _aligned(rows, kind):
+    """Zeros whose rows start at cache lines, so that no vector straddles two."""
+    size = rows * WIDTH * np.dtype(kind).itemsize
+    memory = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
+    first = -memory.ctypes.data % _CACHE_LINE
+    return memory[first : first + size].view(kind).reshape(rows, WIDTH)
+
+
+@inlined
+def observe(data, lanes):
+    """Add the step's gain to int g and keep track of its largest absolute value."""
+    for i in range(lanes):
+        delta = data[DELTA, i] + data[GAIN, i]
+        data[DELTA, i] = delta
+        data[PEAK, i] = larger(data[PEAK, i], abs(data[BASE, i] + delta))
+        data[GAIN, i] = 0
+
+
+@inlined
+def flush(data, total, lanes):
+    """Move what has gathered since the last flush to `total`."""
+    for i in range(lanes):
+        total[TOTAL_DELTA, i] += data[DELTA, i]
+        total[TOTAL_MARTINGALE, i] += data[MARTINGALE, i]
+        total[TOTAL_VARIATION, i] += data[VARIATION, i]
+        data[DELTA, i] = data[MARTINGALE, i] = data[VARIATION, i] = 0
+        data[BASE, i] = total[TOTAL_DELTA, i]
+
+
+@inlined
+def follow_extremes(data, lanes):
+    """Keep track of the smallest and the largest int g, after `observe`."""
+    for i in range(lanes):
+        value = data[BASE, i] + data[DELTA, i]
+        data[LOW, i] = smaller(data[LOW, i], value)
+        data[HIGH, i] = larger(data[HIGH, i], value)
+
+
+@kernel
+def retire(words, data, total, lanes, lower, upper):
+    """Drop the lanes whose int g has reached one of the levels; return how many are left.
+
+    A path that has left every bound stays, so that it is seen at the end. The last lane takes the
+    place of a dropped one, so that those left stay side by side.
+    """
+    symmetric = lower == -upper
+    i = 0
+    while i < lanes:
+        low = -data[PEAK, i] if symmetric else data[LOW, i]
+        high = data[PEAK, i] if symmetric else data[HIGH, i]
+        if (low <= lower or high >= upper) and -np.inf < low and high < np.inf:
+            lanes -= 1
+            words[:, i] = words[:, lanes]
+            data[:, i] = data[:, lanes]
+            total[:, i] = total[:, lanes]
+        else:
+            i += 1
+    return lanes

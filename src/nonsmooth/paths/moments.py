@@ -1,0 +1,104 @@
+"""Moments of int g from sums over paths, by regression on the control variates."""
+
+import numpy as np
+
+from nonsmooth.errors import SceneError
+
+
+def moments(gram):
+    """Mean and variance of D, their standard errors, by regression on the control variates.
+
+    Parameters
+    ----------
+    gram : array_like, shape (t, 5, 5)
+        From `gram`, of all parts of the ensemble together.
+
+    Returns
+    -------
+    dict
+        Arrays over time: `mean`, `mean_error`, `variance`, `variance_error` (standard errors).
+        Where no path has moved yet, as if one had: as far as those that have, when the first do.
+
+    Raises
+    ------
+    SceneError
+        If the spread is lost in the mean, or no path has moved by the last time.
+    """
+    gram = np.asarray(gram)
+    paths = gram[:, 0, 0]
+    moved = gram[:, 2, 2] > 0
+    if not moved[-1]:
+        raise SceneError(
+            "int g is 0 on all paths at all times, so that nothing is known of its spread; choose "
+            "a longer time or another observable"
+        )
+    average = gram[:, 0] / paths[:, None]
+    covariance = gram / paths[:, None, None] - average[:, :, None] * average[:, None, :]
+    result = {name: np.empty(len(gram)) for name in _MOMENTS}
+    for k, (a, c, count) in enumerate(zip(average, covariance, paths, strict=True)):
+        if count < 2 or np.any(np.diag(c)[1:3] < _RESOLVED * gram[k].diagonal()[1:3] / count):
+            raise SceneError(
+                "the spread of int g is lost in its mean, or there is one path only; "
+                "subtract the mean from g or take more paths"
+            )
+        plain = c[1, 1] * count / (count - 1)
+        # to first order the sample variance is the mean of D^2 - 2 E[D] D
+        for name, value, weights in (
+            ("mean", a[1], np.array([0, 1, 0, 0, 0])),
+            ("variance", plain, np.array([0, -2 * a[1], 1, 0, 0])),
+        ):
+            slope = np.linalg.pinv(c[3:, 3:], hermitian=True) @ (c[3:] @ weights)
+            weights = weights - np.concatenate([np.zeros(3), slope])
+            result[name][k] = value - slope @ a[3:]
+            result[f"{name}_error"][k] = np.sqrt(max(weights @ c @ weights, 0.0) / count)
+    first = int(np.argmax(moved))
+    square = gram[first, 2, 2] / gram[first, 1, 1]  # of those that have moved
+    result["mean_error"][:first] = np.sqrt(square) / paths[:first]
+    result["variance_error"][:first] = square / paths[:first]
+    return result
+
+
+_RESOLVED = 1e-10  # a variance below this part of the mean square has no digits left
+
+
+_MOMENTS = ("mean", "mean_error", "variance", "variance_error")
+
+
+def step_bias(change, order):
+    """Bias of the variance of D by the step, from `coupled`, and its standard error.
+
+    Parameters
+    ----------
+    change : numpy.ndarray, shape (t, 4, 4)
+    order : float
+        Weak order q of the scheme: the bias is the change by halving over 1 - 2^-q.
+
+    Returns
+    -------
+    bias, error : numpy.ndarray, shape (t,)
+    """
+    count = change[:, :1, 0]
+    average = change[:, 0] / count
+    covariance = change / count[..., None] - average[:, :, None] * average[:, None, :]
+    shift, square, mean = average[:, 1:].T
+    # Var D_h - Var D_h/2, and its derivatives by the averages
+    value = square - shift * (2 * mean + shift)
+    weights = np.stack([0 * mean, -2 * (mean + shift), 0 * mean + 1, -2 * shift], axis=1)
+    factor = 1 / (1 - 2**-order)
+    variance = np.einsum("ti,tij,tj->t", weights, covariance, weights)
+    return factor * value, factor * np.sqrt(np.maximum(variance, 0.0) / count[:, 0])
+
+
+def mean_bias(change, order):
+    """Bias of the mean of D by the step, and its standard error; see `step_bias`."""
+    count = change[:, 0, 0]
+    shift = change[:, 0, 1] / count
+    spread = np.sqrt(np.maximum(change[:, 1, 1] / count - shift**2, 0.0) / count)
+    factor = 1 / (1 - 2**-order)
+    return factor * shift, factor * spread
+
+
+def variance_of_fine(change):
+    """Variance of D with the half step, from `coupled`, shape (t,)."""
+    count = change[:, 0, 0]
+    return change[:, 3, 3] / count - (change[:, 0, 3] / count) ** 2

@@ -1,0 +1,79 @@
+"""The drift-implicit Euler scheme for dry friction alone: weak order 1, stable at every step.
+
+The resolvent of C_b y + a_n'(y) is explicit: linear near 0, a shifted line beyond.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.panel import GAIN, Y, observe
+from nonsmooth.paths.kernels.vector_math import fma, like, minimum
+from nonsmooth.scenes import models
+
+
+class DriftImplicit(NamedTuple):
+    """Coefficients of the scheme.
+
+    Below `bound` the resolvent is `inner` w, beyond it `outer` (w - `shift`).
+    """
+
+    step: float
+    normals: int
+    transition: tuple
+    factor: tuple
+    bound: float
+    inner: float
+    outer: float
+    shift: float
+
+
+def handles(scene):
+    """Only the velocity under dry friction, with white noise and g = y."""
+    return (
+        scene.state == ("y",)
+        and scene.noise.kind == "white"
+        and scene.mechanics.velocity_penalty != 0
+        and scene.observable_expression == models.y
+    )
+
+
+@lru_cache(maxsize=1024)
+def coefficients(scene, step, precision="float32"):
+    """Return the coefficients of a scene's scheme; see `strang.coefficients`."""
+    number = np.dtype(precision).type
+    knot, inner, _ = scene.mechanics.penalty.at(scene.n)
+    damped = 1 + step * scene.damping
+    return DriftImplicit(
+        step=number(step),
+        normals=1,
+        transition=(number(0),) * 4,
+        factor=(number(math.sqrt(step) * scene.noise.sigma), number(0), number(0)),
+        bound=number(knot * damped + step),
+        inner=number(1 / (damped + step * inner)),
+        outer=number(1 / damped),
+        shift=number(step),
+    )
+
+
+@inlined
+def flow(s, data, first, last, lanes):
+    """Nothing: the steps share no part."""
+
+
+@inlined
+def kick(s, data, normal, lanes):
+    """One step; int g by the trapezoidal rule."""
+    half = s.step / like(s.step, 2.0)
+    for i in range(lanes):
+        before = data[Y, i]
+        moved = fma(s.factor[0], data[normal, i], before)
+        size = abs(moved)
+        near = s.inner * minimum(size, s.bound)
+        after = math.copysign(near if size <= s.bound else s.outer * (size - s.shift), moved)
+        data[Y, i] = after
+        data[GAIN, i] = half * (before + after)
+    observe(data, lanes)

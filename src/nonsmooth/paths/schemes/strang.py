@@ -1,0 +1,399 @@
+"""The Strang splitting of every scene: exact mechanical half-flows around an exact noise step.
+
+One step of length h is X(h/2) Y(h/2) N(h) Y(h/2) X(h/2):
+
+X   the displacement with the velocity frozen; for the obstacle, where the penalty is a
+    spring, both together (free flight and elastic contact);
+Y   the velocity with displacement and forcing frozen;
+N   the noise: exact Gaussian step if its equation is linear, otherwise half a deterministic
+    flow (classical Runge-Kutta), the Brownian increment, half a flow. For white noise the
+    linear equation is d y = -C_b y dt + sigma dW.
+
+Between two noise steps neighbouring half-flows are merged into Y(h/2) X(h) Y(h/2), or into
+Y(h) where the displacement is not needed. int g is gathered over the noise step, as the mean of
+g before and after it; the penalty force is gathered as what it takes from its flow, exactly but
+for the damping within the flow of dry friction under colored noise.
+
+Weak order 2 where the drift is smooth, 1.5 across the kink of the friction law, stable for
+every n. Scenes that differ only in n consume the same increments: they are driven by the
+same Brownian path.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+import sympy
+
+from nonsmooth.paths.control_variate import DEGREE
+from nonsmooth.paths.kernels import exact_flows
+from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
+from nonsmooth.paths.kernels.panel import (
+    BASE,
+    DELTA,
+    ETA,
+    GAIN,
+    MARTINGALE,
+    PEAK,
+    VARIATION,
+    WIDTH,
+    WORK,
+    ZETA,
+    X,
+    Y,
+    observe,
+)
+from nonsmooth.paths.kernels.vector_math import fma, larger, like, maximum, minimum
+from nonsmooth.scenes import models
+from nonsmooth.scenes.formulas import vectorised
+
+# kernels compare integers, not names
+_ELASTO_PLASTIC, _FRICTION, _OBSTACLE = 0, 1, 2
+_MODEL_CODE = {"elasto_plastic": _ELASTO_PLASTIC, "friction": _FRICTION, "obstacle": _OBSTACLE}
+_WHITE, _LANGEVIN, _HAMILTONIAN = 0, 1, 2
+_NOISE_CODE = {"white": _WHITE, "langevin": _LANGEVIN, "hamiltonian": _HAMILTONIAN}
+_VELOCITY, _PENALTY_FORCE, _FORMULA = 0, 1, 2  # observables
+
+
+class Strang(NamedTuple):
+    """Coefficients of the splitting for one scene, one step and one precision.
+
+    `transition` (2 x 2, row by row, less the identity) and `factor` (lower triangle) are the
+    exact Gaussian step of the linear noise's (zeta, eta), or of one variable alone in the first
+    entries. `slope`, `first_drift`, `second_drift` and `formula` are addresses of U', the noise's
+    drifts and g; 0 where they are not used, as compiling one takes a tenth of a second.
+    `control` is the polynomial in y / reach of the control variate's integrand.
+    """
+
+    step: float
+    normals: int
+    model: int
+    noise: int
+    observable: int
+    moves: bool
+    limit: bool
+    linear: bool
+    pushed: bool
+    knot: float
+    inner: float
+    outer: float
+    omega: float
+    rate: float
+    transition: tuple
+    factor: tuple
+    slope: int
+    first_drift: int
+    second_drift: int
+    formula: int
+    controlled: bool
+    reach: float
+    control: tuple
+
+
+@lru_cache(maxsize=1024)
+def coefficients(scene, step, precision="float32"):
+    """Return the coefficients of a scene's splitting.
+
+    Parameters
+    ----------
+    scene : Scene
+    step : float
+        Time step h > 0, "1".
+    precision : {"float32", "float64"}
+
+    Returns
+    -------
+    Strang
+    """
+    number = np.dtype(precision).type
+    white = scene.noise.kind == "white"
+    equations = {models.y: -scene.damping * models.y} if white else scene.noise.drift
+    jacobian = sympy.Matrix(list(equations.values())).jacobian(list(equations))
+    linear = _is_linear(equations)
+    transition, factor = gaussian_step(
+        np.array(jacobian, dtype=float) if linear else np.zeros((1, 1)), scene.noise.sigma, step
+    )
+    knot, inner, outer = scene.mechanics.penalty.at(scene.n)
+    slope = sympy.diff(scene.potential_expression, models.x)
+    pushed = slope != 0 and "x" in scene.state
+    observable = _observable_code(scene)
+
+    def formula(expression, used):
+        if not used:
+            return 0
+        return compiled(sympy.sympify(expression), models.STATE_VARIABLES, precision).address
+
+    return Strang(
+        step=number(step),
+        normals=2 if linear and scene.noise.kind == "hamiltonian" else 1,
+        model=_MODEL_CODE[scene.model],
+        noise=_NOISE_CODE[scene.noise.kind],
+        observable=observable,
+        moves="x" in scene.state,
+        limit=math.isinf(scene.n),
+        linear=linear,
+        pushed=pushed,
+        knot=number(knot),
+        inner=number(inner),
+        outer=number(outer),
+        omega=number(math.sqrt(outer)),
+        rate=number(0.0 if white else scene.damping),
+        transition=tuple(map(number, transition)),
+        factor=tuple(map(number, factor)),
+        slope=formula(slope, pushed),
+        first_drift=formula(scene.noise.drift.get(scene.noise.driven), not linear),
+        second_drift=formula(scene.noise.drift.get(models.eta), not linear),
+        formula=formula(scene.observable_expression, observable == _FORMULA),
+        controlled=False,
+        reach=number(1.0),
+        control=(number(0),) * (DEGREE + 1),
+    )
+
+
+def longest_step(scene):
+    """Step up to which what is not exact is stable: the kicks of U and a nonlinear noise's flow.
+
+    h < 2 / sqrt(max U'') for the kicks, over the displacements that the walls or a few units of
+    the state allow, and h/2 < 2.8 / rate for the Runge-Kutta half-flow. The penalty sets none.
+    """
+    limit = math.inf
+    if "x" in scene.state:
+        reach = 5.0 if scene.model == "friction" else 1.5
+        stiffness = vectorised(sympy.diff(scene.potential_expression, models.x, 2), (models.x,))
+        with np.errstate(all="ignore"):
+            largest = np.nanmax(stiffness(np.linspace(-reach, reach, 401)))
+        limit = 2 / math.sqrt(largest) if largest > 0 else limit
+    drift = scene.noise.drift
+    if drift and not _is_linear(drift):
+        variables = tuple(drift)
+        jacobian = sympy.Matrix(list(drift.values())).jacobian(variables)
+        place = np.meshgrid(*[np.linspace(-3, 3, 25)] * len(variables))
+        entries = [vectorised(entry, variables)(*place) for entry in jacobian]
+        limit = min(limit, 5.6 / np.max(np.linalg.norm(entries, axis=0)))
+    return limit
+
+
+def _is_linear(equations):
+    jacobian = sympy.Matrix(list(equations.values())).jacobian(list(equations))
+    at_rest = [f.subs(dict.fromkeys(equations, 0)) for f in equations.values()]
+    return not jacobian.free_symbols and not any(at_rest)
+
+
+def _observable_code(scene):
+    if scene.observes_penalty_force:
+        return _PENALTY_FORCE
+    return _VELOCITY if scene.observable_expression == models.y else _FORMULA
+
+
+def gaussian_step(matrix, sigma, step):
+    """Transition less identity, and Cholesky factor, of d r = matrix r dt + sigma e_1 dW.
+
+    By Van Loan (1978) for short steps, from the stationary covariance for long ones.
+    """
+    size = len(matrix)
+    diffusion = np.zeros((size, size))
+    diffusion[0, 0] = sigma**2
+    transition = scipy.linalg.expm(matrix * step)
+    if step * np.linalg.norm(matrix) < 1:
+        block = np.block([[-matrix, diffusion], [np.zeros((size, size)), matrix.T]])
+        covariance = transition @ scipy.linalg.expm(block * step)[:size, size:]
+    else:  # the block's growing half would swallow the other
+        stationary = scipy.linalg.solve_continuous_lyapunov(matrix, -diffusion)
+        covariance = stationary - transition @ stationary @ transition.T
+    padded = np.zeros((2, 2, 2))
+    padded[0, :size, :size] = transition - np.eye(size)
+    padded[1, :size, :size] = np.linalg.cholesky((covariance + covariance.T) / 2)
+    if size == 1:
+        padded[0, 0, 0] = math.expm1(matrix[0, 0] * step)
+    lower = padded[1, 0, 0], padded[1, 1, 0], padded[1, 1, 1]
+    return tuple(map(float, padded[0].ravel())), tuple(map(float, lower))
+
+
+@inlined
+def flow(s, data, first, last, lanes):
+    """Mechanical flows between two noise steps, or the first or the last half-flows."""
+    # every part is called in one place only, which is what compiling them costs
+    half = s.step / like(s.step, 2.0)
+    merged = not (s.moves or first or last)  # Y(h) at once
+    for part in range(2):
+        skipped = (part == 1 and (merged or last)) or (part == 0 and first)
+        if not skipped:
+            _accelerate(s, data, s.step if merged else half, lanes)
+        if part == 0 and s.moves:
+            _displace(s, data, half if first or last else s.step, lanes)
+
+
+@inlined
+def kick(s, data, normal, lanes):
+    """Noise step on the normal numbers in row `normal` and, if it takes two, the next row."""
+    if s.controlled:
+        _gather_martingale(s, data, normal, lanes)
+    if s.noise == _WHITE and s.observable == _VELOCITY:
+        _shake_and_observe_velocity(s, data, normal, lanes)
+        return
+    for part in range(2):
+        _gain(s, data, lanes)
+        if part == 0:
+            _shake(s, data, normal, lanes)
+    observe(data, lanes)
+
+
+@inlined
+def _shake_and_observe_velocity(s, data, normal, lanes):
+    """`kick` for white noise and g = y, in one loop: the scene of the paper's section 5."""
+    decay, factor = s.transition[0], s.factor[0]
+    half = s.step / like(s.step, 2.0)
+    for i in range(lanes):
+        before = data[Y, i]
+        after = fma(decay, before, fma(factor, data[normal, i], before))
+        data[Y, i] = after
+        delta = fma(half, before + after, data[DELTA, i])
+        data[DELTA, i] = delta
+        data[PEAK, i] = larger(data[PEAK, i], abs(data[BASE, i] + delta))
+
+
+@inlined
+def _shake(s, data, normal, lanes):
+    (a, b, c, d), (e, f, g) = s.transition, s.factor
+    if not s.linear:
+        driven = ZETA if s.noise == _HAMILTONIAN else ETA
+        for part in range(2):
+            _drift_flow(s, data, s.step / like(s.step, 2.0), lanes)
+            if part == 0:
+                for i in range(lanes):
+                    data[driven, i] += e * data[normal, i]
+    elif s.noise == _HAMILTONIAN:
+        for i in range(lanes):
+            zeta, eta = data[ZETA, i], data[ETA, i]
+            data[ZETA, i] = zeta + fma(a, zeta, fma(b, eta, e * data[normal, i]))
+            data[ETA, i] = eta + fma(
+                c, zeta, fma(d, eta, fma(f, data[normal, i], g * data[normal + 1, i]))
+            )
+    else:
+        row = ETA if s.noise == _LANGEVIN else Y
+        for i in range(lanes):
+            data[row, i] += fma(a, data[row, i], e * data[normal, i])
+
+
+@inlined
+def _drift_flow(s, data, t, lanes):
+    """Classical Runge-Kutta step of the deterministic part of a nonlinear noise."""
+    # the observable's value is not in use meanwhile
+    stage, slope, total = WORK, WORK + 4, WORK + 6
+    two, zero = like(t, 2.0), like(t, 0.0)
+    for row in range(2):
+        for i in range(lanes):
+            data[stage + row, i] = data[ZETA + row, i]
+            data[slope + row, i] = data[total + row, i] = zero
+    for k in range(4):
+        weight = two if k == 1 or k == 2 else like(t, 1.0)
+        reach = t / two if k < 2 else t
+        if s.noise == _HAMILTONIAN:
+            evaluate(s.first_drift, data[slope].ctypes, data[stage:].ctypes, WIDTH, lanes)
+        evaluate(s.second_drift, data[slope + 1].ctypes, data[stage:].ctypes, WIDTH, lanes)
+        for row in range(2):
+            for i in range(lanes):
+                data[total + row, i] += weight * data[slope + row, i]
+                data[stage + row, i] = fma(reach, data[slope + row, i], data[ZETA + row, i])
+    for row in range(2):
+        for i in range(lanes):
+            data[ZETA + row, i] = fma(t / like(t, 6.0), data[total + row, i], data[ZETA + row, i])
+
+
+@inlined
+def _gain(s, data, lanes):
+    """Add half a step's worth of g to the step's gain."""
+    half = s.step / like(s.step, 2.0)
+    if s.observable == _VELOCITY:
+        for i in range(lanes):
+            data[GAIN, i] = fma(half, data[Y, i], data[GAIN, i])
+    elif s.observable == _FORMULA:
+        evaluate(s.formula, data[WORK].ctypes, data[ZETA:].ctypes, WIDTH, lanes)
+        for i in range(lanes):
+            data[GAIN, i] = fma(half, data[WORK, i], data[GAIN, i])
+
+
+@inlined
+def _gather_martingale(s, data, normal, lanes):
+    """Add the martingale's increment, c kick + c' (kick^2 - its mean)/2, and its variance.
+
+    c = u' at the state before the kick: u(y + kick) - u(y) to second order, less its mean, so
+    that what is left does not grow with the square root of the step.
+    """
+    one, two = like(s.reach, 1.0), like(s.reach, 2.0)
+    for i in range(lanes):
+        place = minimum(maximum(data[Y, i] / s.reach, -one), one)
+        value, slope = s.control[DEGREE], like(one, 0.0)
+        for k in range(DEGREE):
+            slope = fma(slope, place, value)
+            value = fma(value, place, s.control[DEGREE - 1 - k])
+        first = s.factor[0] * value
+        second = s.factor[0] * s.factor[0] / (two * s.reach) * slope
+        kick = data[normal, i]
+        data[MARTINGALE, i] += fma(first, kick, second * fma(kick, kick, -one))
+        data[VARIATION, i] += fma(first, first, two * second * second)
+
+
+@inlined
+def _displace(s, data, t, lanes):
+    """X: the displacement (and the obstacle's velocity) over a time t."""
+    weight = like(t, 1.0) if s.observable == _PENALTY_FORCE else like(t, 0.0)
+    if s.model == _FRICTION:
+        for i in range(lanes):
+            data[X, i] = fma(t, data[Y, i], data[X, i])
+    elif s.model == _ELASTO_PLASTIC:
+        for i in range(lanes):
+            y, x = data[Y, i], data[X, i]
+            if s.limit:
+                after = exact_flows.confined(x, t, y)
+            else:
+                after = exact_flows.penalised(x, t, y, like(t, 0.0), s.knot, s.inner, s.outer)
+            data[X, i] = after
+            data[GAIN, i] += weight * (fma(y, t, x) - after)
+    else:
+        for i in range(lanes):
+            y, x = data[Y, i], data[X, i]
+            if s.limit:
+                after, x = exact_flows.elastic_impact(y, x, t)
+            else:
+                after, x = exact_flows.spring_contact(y, x, t, s.omega)
+            data[Y, i], data[X, i] = after, x
+            data[GAIN, i] += weight * (y - after)
+
+
+@inlined
+def _accelerate(s, data, t, lanes):
+    """Y: the velocity over a time t, with displacement and forcing frozen."""
+    undriven = s.noise == _WHITE and not s.pushed
+    if undriven and s.model != _FRICTION:
+        return
+    if undriven and s.observable != _PENALTY_FORCE:
+        for i in range(lanes):
+            data[Y, i] = exact_flows.at_rest(
+                data[Y, i], t, s.knot, like(t, 1.0) if s.limit else s.inner
+            )
+        return
+    if s.pushed:
+        evaluate(s.slope, data[WORK].ctypes, data[ZETA:].ctypes, WIDTH, lanes)
+        for i in range(lanes):
+            data[WORK, i] = data[ETA, i] - data[WORK, i]
+    else:
+        for i in range(lanes):
+            data[WORK, i] = data[ETA, i]
+    if s.model == _FRICTION:
+        weight = like(t, 1.0) if s.observable == _PENALTY_FORCE else like(t, 0.0)
+        for i in range(lanes):
+            y = data[Y, i]
+            if s.limit:
+                after = exact_flows.dry_friction(y, t, data[WORK, i], s.rate)
+            else:
+                after = exact_flows.penalised(y, t, data[WORK, i], s.rate, s.knot, s.inner, s.outer)
+            data[Y, i] = after
+            damped = s.rate * (y + after) / like(t, 2.0)
+            data[GAIN, i] += weight * (fma(data[WORK, i] - damped, t, y) - after)
+    else:
+        for i in range(lanes):
+            data[Y, i] = exact_flows.relax(data[Y, i], t, data[WORK, i], s.rate)

@@ -1,0 +1,131 @@
+"""Paths and the moments of their integrals: `simulate`."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from nonsmooth.checks import require_count, require_increasing, require_positive
+from nonsmooth.errors import SceneError
+from nonsmooth.paths import schemes
+from nonsmooth.paths.ensembles import gram, paths_at
+from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.paths.moments import moments
+from nonsmooth.paths.resolution import (
+    PILOT_PATHS,
+    choose_step,
+    halved_step_bias,
+    require_possible,
+    require_resolved,
+)
+
+
+def simulate(
+    scene,
+    horizon,
+    tol=1e-2,
+    step=None,
+    paths=None,
+    seed=0,
+    times=None,
+    keep="moments",
+    scheme="strang",
+    precision="float32",
+    threads=None,
+):
+    """Simulate a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    horizon : float
+        Final time, "1".
+    tol : float
+        Relative error wanted of the variance of D = int_0^horizon g: it decides, unless given,
+        on the number of paths (three standard errors are three quarters of it) and on the
+        longest step (its bias is a quarter of it).
+    step : float, optional
+        Longest time step, "1".
+    paths : int, optional
+        Number of paths.
+    seed : int or tuple
+        The same seed gives the same bits whatever the number of threads.
+    times : array_like, shape (t,), optional
+        Increasing output times in (0, horizon]; 200 equidistant ones unless given.
+    keep : {"moments", "paths"}
+        Whether to return statistics, in O(1) memory, or the paths at the output times.
+    scheme : str
+        A name in `schemes.SCHEMES`.
+    precision : {"float32", "float64"}
+        Arithmetic of the moments' steps; their sums, and kept paths, are in double precision.
+    threads : int, optional
+        All cores unless given.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``"moments"``, over time: `mean` and `variance` of int_0^t g with their standard errors
+        `mean_error`, `variance_error`, and `mean_bias` and `variance_bias`, the biases of the time
+        step as measured by halving it, with `mean_bias_error`, `variance_bias_error`.
+        ``"paths"``: the variables of the scene's state and `delta`, each (path, time), time 0
+        included. Attributes `step`, `paths`.
+
+    Raises
+    ------
+    SceneError
+        If a parameter is out of range, or a path diverges.
+    ToleranceError
+        If the step is so long that halving it does not measure its bias, or `tol` would take
+        more than hours; the message has one that does not.
+    """
+    if keep not in ("moments", "paths"):
+        raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
+    if precision not in ("float32", "float64"):
+        raise SceneError(f"unknown precision {precision!r}; choose 'float32' or 'float64'")
+    times = _output_times(horizon, times)
+    require_positive("tol", tol)
+    schemes.scheme(scene, scheme)  # refuses what it cannot simulate
+    chosen = paths is None
+    paths = math.ceil(32 / tol**2) if chosen else paths
+    require_count("paths", paths)
+    if step is None:
+        step = choose_step(scene, times[-1:], tol / 4, seed, threads, scheme)
+    require_positive("step", step)
+    if chosen:
+        require_possible(paths, times[-1] / step, "the variance of int g is sampled", tol)
+    attributes = {"step": step, "paths": paths}
+    if keep == "paths":
+        kept = paths_at(scene, times, step, paths, seed, scheme, threads)
+        return xr.Dataset(
+            {
+                name: (("path", "time"), kept[:, i].T)
+                for i, name in enumerate([*scene.state, "delta"])
+            },
+            coords={"time": np.concatenate([[0.0], times])},
+            attrs=attributes,
+        )
+    found = moments(gram(scene, times, step, paths, seed, 0, threads, scheme, precision=precision))
+    fewer = min(paths, max(PILOT_PATHS, paths // 8))
+    for name, bias in halved_step_bias(
+        scene, times, step, fewer, labelled(seed, "halving"), threads, scheme
+    ).items():
+        found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
+    require_resolved(
+        step, *(found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))
+    )
+    return xr.Dataset(
+        {name: ("time", values) for name, values in found.items()},
+        coords={"time": times},
+        attrs=attributes,
+    )
+
+
+def _output_times(horizon, times):
+    require_positive("horizon", horizon)
+    times = np.linspace(0, horizon, 201)[1:] if times is None else np.asarray(times, dtype=float)
+    require_increasing("output times", times)
+    if times[-1] > horizon:
+        raise SceneError(
+            f"the last output time, {times[-1]:g}, is beyond horizon = {horizon:g}; choose another"
+        )
+    return times

@@ -1,0 +1,180 @@
+"""The one loop over time steps: every scheme, every scene, all the lanes of a panel."""
+
+import numba
+import numpy as np
+from numba.extending import intrinsic, overload
+
+from nonsmooth.paths.kernels.compilation import inlined, kernel
+from nonsmooth.paths.kernels.panel import (
+    BASE,
+    BEFORE,
+    DELTA,
+    FLUSH,
+    ROWS,
+    WIDTH,
+    flush,
+    follow_extremes,
+    observe,
+    retire,
+)
+from nonsmooth.paths.kernels.random_numbers import normals
+from nonsmooth.paths.kernels.vector_math import fma, like
+from nonsmooth.paths.schemes import drift_implicit, dry_friction, euler_maruyama, lie, strang
+
+
+@intrinsic
+def _pointer(typing, address):
+    def generate(context, builder, signature, arguments):
+        return context.cast(builder, arguments[0], address, signature.return_type)
+
+    return numba.types.CPointer(address.dtype)(address), generate
+
+
+_MODULES = {
+    strang.Strang: strang,
+    euler_maruyama.EulerMaruyama: euler_maruyama,
+    drift_implicit.DriftImplicit: drift_implicit,
+    dry_friction.DryFriction: dry_friction,
+    lie.Lie: lie,
+}
+
+
+def _flow(s, data, first, last, lanes):
+    raise TypeError("flow is for kernels")
+
+
+@overload(_flow)
+def _choose_flow(s, data, first, last, lanes):
+    chosen = _MODULES[s.instance_class].flow
+    return lambda s, data, first, last, lanes: chosen(s, data, first, last, lanes)
+
+
+def _kick(s, data, normal, lanes):
+    raise TypeError("kick is for kernels")
+
+
+@overload(_kick)
+def _choose_kick(s, data, normal, lanes):
+    chosen = _MODULES[s.instance_class].kick
+    return lambda s, data, normal, lanes: chosen(s, data, normal, lanes)
+
+
+@inlined
+def _of_known_shape(panel):
+    return (
+        numba.carray(_pointer(panel.words.ctypes), (4, WIDTH)),
+        numba.carray(_pointer(panel.data.ctypes), (ROWS, WIDTH)),
+        numba.carray(_pointer(panel.total.ctypes), (3, WIDTH)),
+    )
+
+
+@kernel
+def march(s, panel, lanes, steps, lower, upper):
+    """Advance the paths of a panel; paths whose int g reaches one of the levels are dropped.
+
+    Parameters
+    ----------
+    s : NamedTuple
+        Coefficients of a scheme.
+    panel : Panel
+    lanes : int
+        Number of paths.
+    steps : int
+    lower, upper : float
+        Levels, infinite if there are none; looked at after every `FLUSH` steps and at the end,
+        for the extremes of all steps.
+
+    Returns
+    -------
+    int
+        Number of paths left, in the first lanes.
+    """
+    words, data, total = _of_known_shape(panel)
+    normal = 2
+    for k in range(steps + 1):
+        _flow(s, data, k == 0, k == steps, lanes)
+        if k == steps:
+            observe(data, lanes)  # what the last flow has added
+        else:
+            if normal >= 2:
+                normals(words, data, lanes)
+                if s.normals == 4:
+                    normals(words, data[2:], lanes)
+                normal = 0
+            _kick(s, data, normal, lanes)
+            normal += s.normals
+        if lower != -upper:  # otherwise max |int g|, which every step has, is enough
+            follow_extremes(data, lanes)
+        if (k + 1) % FLUSH == 0 or k == steps:
+            flush(data, total, lanes)
+            if lower > -np.inf or upper < np.inf:
+                lanes = retire(words, data, total, lanes, lower, upper)
+    return lanes
+
+
+@kernel
+def march_pair(fine, coarse, panel, other, lanes, steps, lower, upper, began, passage):
+    """Advance two panels on the same noise, the second with steps twice as long.
+
+    Parameters
+    ----------
+    fine, coarse : NamedTuple
+        Coefficients of a scheme, of steps h/2 and h; the coarse ones take increments as given.
+    panel, other : Panel
+        Of the fine and of the coarse paths; the generators are the first's.
+    lanes : int
+        Number of paths.
+    steps : int
+        Of the coarse paths.
+    lower, upper : float
+        Levels, infinite if there are none.
+    began : float
+        Time of the first step.
+    passage : array, shape (2, l)
+        Times at which int g first reaches one of the levels, of the fine and of the coarse paths,
+        interpolated within a step; inf before.
+    """
+    words, data, total = _of_known_shape(panel)
+    _, joined, other_total = _of_known_shape(other)
+    a, b, c, d = fine.transition
+    e, f, g = fine.factor
+    for k in range(2 * steps + 1):  # fine ones
+        odd = k % 2 == 1
+        now = began + (k // 2) * float(coarse.step)
+        _flow(fine, data, k == 0, k == 2 * steps, lanes)
+        if not odd:
+            _flow(coarse, joined, k == 0, k == 2 * steps, lanes)
+        if k == 2 * steps:
+            observe(data, lanes)
+            observe(joined, lanes)
+        else:
+            normal = 1 if odd and fine.normals == 1 else 0
+            if normal == 0:
+                normals(words, data, lanes)
+            for i in range(lanes):
+                first = data[normal, i]
+                second = data[1, i] if fine.normals == 2 else like(e, 0.0)
+                early = joined[0, i] if odd else like(e, 0.0)
+                also = joined[1, i] if odd else like(e, 0.0)
+                joined[0, i] = fma(a, early, fma(b, also, fma(e, first, early)))
+                joined[1, i] = fma(c, early, fma(d, also, fma(f, first, fma(g, second, also))))
+            _kick(fine, data, normal, lanes)
+            start = now + fine.step if odd else now
+            _note_passage(data, passage[0], lanes, lower, upper, start, fine.step)
+            if odd:
+                _kick(coarse, joined, 0, lanes)
+                _note_passage(joined, passage[1], lanes, lower, upper, now, coarse.step)
+        if (k + 1) % FLUSH == 0 or k == 2 * steps:
+            flush(data, total, lanes)
+            flush(joined, other_total, lanes)
+
+
+@inlined
+def _note_passage(data, passage, lanes, lower, upper, now, step):
+    """Record the paths that have reached one of the levels within a step."""
+    for i in range(lanes):
+        before, after = data[BEFORE, i], data[BASE, i] + data[DELTA, i]
+        if (after >= upper or after <= lower) and passage[i] == np.inf:
+            level = upper if after >= upper else lower
+            passage[i] = now + step * (level - before) / (after - before)
+        data[BEFORE, i] = after

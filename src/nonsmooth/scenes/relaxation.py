@@ -1,0 +1,61 @@
+"""How fast a scene comes back from far out, where its drift is linear."""
+
+import itertools
+import math
+import time
+
+import numpy as np
+
+from nonsmooth.errors import SceneError
+from nonsmooth.estimate import Estimate
+from nonsmooth.scenes.formulas import vectorised
+
+_FAR = np.array([1e5, 1e6, 1e7])  # distances between which the drift must be linear
+
+
+_LINEAR = 1e-6  # its slopes may differ by so much
+
+
+def rate_at_infinity(scene):
+    """Rate at which P_t V_n / V_n decays far out, which no rate in the V_n-norm exceeds.
+
+    There V_n is quadratic and the drift linear, so that paths are exp(J t) z and the rate is
+    twice that of the slowest eigenvalue of J.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+
+    Returns
+    -------
+    Estimate
+        The error is the difference of two distances, and rounding.
+
+    Raises
+    ------
+    SceneError
+        If the drift is not linear far out.
+    """
+    began = time.perf_counter()
+    symbols = tuple(symbol for symbol in scene.variables if symbol.name in scene.state)
+    drift = scene.numerical_drift()
+    drift = [vectorised(drift[symbol], symbols) for symbol in symbols]
+
+    def slopes(direction):
+        values = np.array([rate(*np.outer(direction, _FAR)) for rate in drift])
+        return np.diff(values) / np.diff(_FAR)
+
+    near, far = np.moveaxis([slopes(unit) for unit in np.eye(len(symbols))], 2, 0)
+    for corner in itertools.product([-1.0, 1.0], repeat=len(symbols)):
+        linear = (corner @ near)[:, None]
+        if not np.allclose(slopes(corner), linear, rtol=_LINEAR, atol=_LINEAR):
+            raise SceneError(
+                "the drift is not linear far out, where the rate of decay is read from it; choose "
+                "potentials that grow quadratically"
+            )
+    value, other = (-2 * float(np.linalg.eigvals(part).real.max()) for part in (far, near))
+    # where eigenvalues coincide, rounding moves them by its square root
+    rounding = 4 * math.sqrt(np.finfo(float).eps) * float(np.linalg.norm(far))
+    error = abs(value - other) + rounding
+    return Estimate(value, error, "linear drift", time.perf_counter() - began)

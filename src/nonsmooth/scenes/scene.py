@@ -1,0 +1,321 @@
+"""A scene: mechanical model + noise + potential + damping + penalization + observable."""
+
+import difflib
+import itertools
+import math
+import warnings
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+
+import numpy as np
+import sympy
+
+from nonsmooth.errors import AssumptionWarning, SceneError
+from nonsmooth.scenes import models, noises
+from nonsmooth.scenes.formulas import parse, vectorised
+from nonsmooth.scenes.models import STATE_VARIABLES, x
+from nonsmooth.scenes.penalties import n as penalization
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is simulated and solved.
+
+    Parameters
+    ----------
+    model : str
+        ``"elasto_plastic"``, ``"friction"`` or ``"obstacle"``.
+    noise : str or White or Langevin or Hamiltonian
+        ``"white"``, ``"langevin"`` (unit Ornstein-Uhlenbeck), ``"hamiltonian"`` (unit
+        Kanai-Tajimi), or a noise object.
+    n : float
+        Penalization, "1"; ``inf`` is the non-smooth limit.
+    damping : float
+        C_b > 0, "1".
+    potential : str
+        U, a formula in ``x``.
+    observable : str
+        g, a formula in ``zeta, eta, y, x``, or the penalty force by its name in the model:
+        ``"plastic_strain_rate"``, ``"friction_force"``, ``"contact_force"``.
+    start : dict
+        Initial values of the state variables; those not named start at 0.
+
+    Raises
+    ------
+    SceneError
+        If a name is unknown or a parameter out of range.
+    ExpressionError
+        If a formula cannot be read.
+    """
+
+    model: str
+    noise: object = "white"
+    n: float = 100.0
+    damping: float = 1.0
+    potential: str = "0"
+    observable: str = "y"
+    start: dict = field(default_factory=dict, hash=False)
+
+    def __post_init__(self):
+        self._check()
+        self._warn_if_not_confined()
+        self._warn_if_g_grows()
+
+    def _check(self):
+        _require_known("model", self.model, models.MODELS)
+        if isinstance(self.noise, str):
+            _require_known("noise", self.noise, noises.NOISES)
+            object.__setattr__(self, "noise", noises.NOISES[self.noise])
+        if not isinstance(self.noise, noises.White | noises.Langevin | noises.Hamiltonian):
+            raise SceneError(
+                f"a scene needs noise, got {self.noise!r}; choose from {', '.join(noises.NOISES)} "
+                "or a noise object"
+            )
+        for name in ("n", "damping"):
+            try:
+                object.__setattr__(self, name, float(getattr(self, name)))
+            except (TypeError, ValueError):
+                raise SceneError(
+                    f"a scene needs a number for {name}, got {getattr(self, name)!r}; choose one"
+                ) from None
+        try:
+            start = {name: float(value) for name, value in sorted(self.start.items())}
+        except (AttributeError, TypeError, ValueError):
+            raise SceneError(
+                f"start = {self.start!r} is not a dict of numbers; write for example {{'y': 1.0}}"
+            ) from None
+        if not all(map(math.isfinite, start.values())):
+            raise SceneError(f"start = {start} is not finite; choose finite numbers")
+        object.__setattr__(self, "start", start)
+        for name, value in (("n", self.n), ("damping", self.damping)):
+            if not value > 0:
+                raise SceneError(f"a scene needs {name} > 0, got {value}; choose a positive number")
+        if not self.damping < float("inf"):
+            raise SceneError("a scene needs a finite damping; choose a positive number")
+        for name in self.start:
+            _require_known("start variable", name, [s.name for s in self.variables])
+        if (
+            self.n == float("inf")
+            and self.model in ("elasto_plastic", "obstacle")
+            and abs(self.start.get("x", 0.0)) > 1
+        ):
+            raise SceneError(
+                f"at n = inf the displacement is confined to [-1, 1], but it starts at "
+                f"{self.start['x']}; start inside or choose a finite n"
+            )
+        unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
+        if unknown:
+            raise SceneError(
+                f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
+                f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
+            )
+
+    def _warn_if_not_confined(self):
+        """Warn if U_n grows less than quadratically (hyp:HU2b); reads the formula of U.
+
+        With obstacles the penalty is part of U_n and confines.
+        """
+        ends = np.outer([-1, 1], noises.FAR)
+        with np.errstate(all="ignore"):
+            growth = vectorised(self.potential_expression, (x,))(ends) / ends**2
+        confining = np.all(growth[:, -1] > 1e-3 * np.abs(growth[:, 0])) and np.all(growth > 0)
+        if "x" in self.state and not (confining or self.mechanics.in_potential):
+            warnings.warn(
+                f"U = {self.potential!r} violates (HU2), U(x) >= c x**2 - C: the paper's theorems "
+                "do not cover this scene; add a confining term such as x**2/2",
+                AssumptionWarning,
+                stacklevel=4,
+            )
+
+    def _warn_if_g_grows(self):
+        """Warn unless g^2 <= C V_n, which Theorem thm3 asks for."""
+        if self.grows_too_fast:
+            warnings.warn(
+                f"g = {self.observable!r} violates g**2 <= V, V the Lyapunov function, which grows "
+                "like the energy: the paper's limit theorem does not cover this scene, and int g "
+                "may have no variance; choose a g that stays finite and grows less",
+                AssumptionWarning,
+                stacklevel=4,
+            )
+
+    @cached_property
+    def grows_too_fast(self):
+        """Whether g^2 <= C V_n is violated, as read off the formula of g.
+
+        V_n grows like the energy, |z|^2 + U. Looked at are the origin, and far out the axes and
+        the diagonals.
+        """
+        if self.observes_penalty_force:
+            return False
+        used = [s for s in self.variables if s in self.observable_expression.free_symbols]
+        signs = np.array(list(itertools.product([-1, 0, 1], repeat=len(used))), dtype=float)
+        place = {s: signs[:, [k]] * noises.FAR for k, s in enumerate(used)}
+        if x in place and math.isinf(self.n) and self.model in ("elasto_plastic", "obstacle"):
+            place[x] = np.clip(place[x], -1, 1)
+        with np.errstate(all="ignore"):
+            V = 1 + sum(value**2 for value in place.values())
+            if x in place:
+                V = V + np.abs(vectorised(self.potential_expression, (x,))(place[x]))
+            g = vectorised(self._with_numbers(self.observable_expression), tuple(used))
+            ratio = np.abs(g(*place.values())) / np.sqrt(V)
+        growth = np.broadcast_to(ratio, (len(signs), len(noises.FAR)))
+        return not (
+            np.all(np.isfinite(growth)) and np.all(10 * growth[:, 0] + 1 >= growth[:, 1:].T)
+        )
+
+    @property
+    def identity(self):
+        """All that tells scenes apart except n, by which no random stream depends."""
+        return (
+            self.model,
+            repr(self.noise),
+            self.damping,
+            self.potential,
+            self.observable,
+            self.start,
+        )
+
+    def with_n(self, n):
+        """Return the same scene with another penalization."""
+        return self._changed(n=n)
+
+    def with_start(self, start):
+        """Return the same scene from another starting point."""
+        return self._changed(start=start)
+
+    def _changed(self, **changes):
+        """Return a scene of which there is nothing to be warned that has not been said of this."""
+        other = object.__new__(type(self))
+        other.__dict__.update({f.name: getattr(self, f.name) for f in fields(self)} | changes)
+        other._check()
+        return other
+
+    @property
+    def mechanics(self):
+        """The mechanical model's definition."""
+        return models.MODELS[self.model]
+
+    @cached_property
+    def variables(self):
+        """All the variables of the paper's state Z^n, whether the observable needs them or not."""
+        own = set(self.noise.drift)
+        return tuple(s for s in STATE_VARIABLES if s in own or s in (models.y, models.x))
+
+    @cached_property
+    def potential_expression(self):
+        """U(x), a sympy expression."""
+        return parse(self.potential, (x,))
+
+    @cached_property
+    def observable_expression(self):
+        """The observable g, a sympy expression; with n in it if it is the penalty force."""
+        if self.observes_penalty_force:
+            return self.mechanics.penalty_force
+        return parse(self.observable, STATE_VARIABLES)
+
+    @property
+    def observes_penalty_force(self):
+        """Whether g is phi_n', the built-in observable named after what it is in the model."""
+        return self.observable == self.mechanics.force_name
+
+    @cached_property
+    def drift(self):
+        """F_n of Table 2: a dict from the symbols of `variables` to sympy expressions in n, C_b."""
+        return self.noise.drift | self.mechanics.drift(
+            self.potential_expression, self.noise.forcing
+        )
+
+    @cached_property
+    def state(self):
+        """Names of the smallest set of variables that determines the observable's law.
+
+        The observable's variables, closed under "the drift of one contains the other".
+        """
+        needed = self.observable_expression.free_symbols & set(self.variables)
+        while True:
+            grown = needed.union(
+                *(self.drift[s].free_symbols & set(self.variables) for s in needed)
+            )
+            if grown == needed:
+                return tuple(s.name for s in STATE_VARIABLES if s in needed)
+            needed = grown
+
+    def is_odd(self):
+        """Whether g and the drift change sign with the state, so that E g = 0 by symmetry."""
+        return self._odd
+
+    @cached_property
+    def _odd(self):
+        mirrored = {s: -s for s in self.variables}
+        odd = [self.observable_expression]
+        odd += [self.drift[s] for s in self.variables if s.name in self.state]
+        return all(
+            sympy.simplify(sympy.piecewise_fold(f + f.subs(mirrored, simultaneous=True))) == 0
+            for f in odd
+        )
+
+    def numerical_drift(self):
+        """Return `drift` with the scene's numbers in the place of n and C_b.
+
+        Raises
+        ------
+        SceneError
+            If n is infinite: the drift is then set-valued.
+        """
+        if self.n == float("inf"):
+            raise SceneError("the non-smooth limit n = inf has no drift; choose a finite n")
+        return {s: self._with_numbers(expression) for s, expression in self.drift.items()}
+
+    def numerical_observable(self):
+        """Return `observable_expression` with the scene's n; Sgn(y) is sign(y).
+
+        Raises
+        ------
+        SceneError
+            If g is the force of a wall that is rigid, n = inf.
+        """
+        if self.observes_penalty_force and self.n == float("inf"):
+            if self.mechanics.velocity_penalty == 0:
+                raise SceneError(
+                    f"at n = inf the {self.observable} is not a function of the state; "
+                    "use Monte Carlo, which integrates it, or a finite n"
+                )
+            return sympy.sign(models.y)
+        return self._with_numbers(self.observable_expression)
+
+    def _with_numbers(self, expression):
+        return expression.subs(
+            {penalization: sympy.Float(self.n), models.damping: sympy.Float(self.damping)}
+        )
+
+
+def by_formulas(parameters):
+    """Return the scene of a configuration, whose colored noise may be given by formulas.
+
+    Parameters
+    ----------
+    parameters : dict
+        Arguments of `Scene`; `noise` may be a dict of the arguments of `Langevin` or, if it has
+        an ``H``, of `Hamiltonian`.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError, ExpressionError
+        As from `Scene` and the noises.
+    """
+    noise = parameters["noise"]
+    if isinstance(noise, dict):
+        kind = noises.Hamiltonian if "H" in noise else noises.Langevin
+        noise = kind(**noise)
+    return Scene(**parameters | {"noise": noise})
+
+
+def _require_known(what, name, known):
+    if name not in known:
+        near = difflib.get_close_matches(str(name), [str(k) for k in known], n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(known)}"
+        raise SceneError(f"unknown {what} {name!r}; {hint}")

@@ -1,0 +1,243 @@
+"""The invariant density of Z^n (Theorem thm1) and its marginals, without Monte Carlo."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import xarray as xr
+from numpy.polynomial.legendre import leggauss
+from scipy.integrate import quad
+
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.grids import mesh, tensor_grid
+from nonsmooth.line import eigenfunctions, quadrature
+from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.models import STATE_VARIABLES
+from nonsmooth.scenes.penalties import n as penalization
+
+_POINTS = 201
+_EXACT = {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2}  # tolerance unless given, by the number of variables
+_DEEP = 80.0  # depth up to which closed forms are normalised
+_GAUSS = 16  # points per piece of a bin
+_RESIDUAL = 0.05  # of the iteration, relative to the tolerance
+
+
+def invariant_density(scene, tol=None, points=None):
+    """Invariant density: marginals of every variable and of the last two together.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n: at n = inf mass concentrates on sets of measure zero.
+    tol : float, optional
+        Error allowed, relative to the largest value of each density; by the number of variables
+        1e-8, 1e-6, 1e-2, 5e-2 unless given.
+    points : dict, optional
+        Maps names of variables to points at which the densities are wanted; 201 equidistant ones
+        over the support unless given.
+
+    Returns
+    -------
+    xarray.Dataset
+        `density_y` and so on over the points of each variable, and the joint density of the last
+        two variables of the state, `density_y_x` or `density_eta_y`; each with its error
+        (`density_y_error`), the largest difference between two grids. Dry friction and obstacles
+        with white noise have closed forms, of which it is the error of the normalisation.
+
+    Raises
+    ------
+    SceneError
+        If n is infinite.
+    ToleranceError
+        If `tol` cannot be met; the message has the error reached.
+    """
+    _require_finite(scene)
+    tol = _EXACT[len(scene.state)] if tol is None else tol
+    if closed := closed_form(scene):
+        if points is None:
+            ends = mesh.box(scene, math.log(1 / tol) + tensor_grid.SPARE)
+            points = {s.name: np.linspace(-end, end, _POINTS) for s, end in ends.items()}
+        found = {(name,): closed[name](points[name])[0] for name in closed}
+        error = {(name,): np.max(closed[name](points[name])[1]) for name in closed}
+        if len(closed) > 1:
+            found["y", "x"] = np.outer(found["y",], found["x",])
+            error["y", "x"] = error["y",] * found["x",].max() + error["x",] * found["y",].max()
+        return _dataset(found, error, points)
+    grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, 1)
+    if points is None:
+        points = {symbol.name: np.linspace(-end, end, _POINTS) for symbol, end in grid.ends.items()}
+    names = [symbol.name for symbol in STATE_VARIABLES if symbol.name in scene.state]
+    accuracy, found = tol * _RESIDUAL, None
+    while True:
+        previous, found = found, _on(scene, grid, names, points, accuracy)
+        if previous is not None:
+            error = {key: np.max(np.abs(found[key] - previous[key])) for key in found}
+            relative = max(error[key] / np.max(found[key]) for key in found)
+            if relative <= tol:
+                break
+        grid = tensor_grid.raised(grid)
+        if not tensor_grid.affordable(scene, grid):
+            raise ToleranceError(
+                f"the invariant density has a relative error of {relative:.1e} on the finest grid, "
+                f"above tol = {tol:g}; loosen tol"
+            )
+    return _dataset(found, error, points)
+
+
+def _dataset(found, error, points):
+    variables = {f"density_{'_'.join(key)}": (key, value) for key, value in found.items()}
+    variables |= {f"density_{'_'.join(key)}_error": ((), value) for key, value in error.items()}
+    return xr.Dataset(variables, coords={key[0]: points[key[0]] for key in found if len(key) == 1})
+
+
+def _require_finite(scene):
+    if math.isinf(scene.n):
+        raise SceneError(
+            "at n = inf the invariant measure of this package's models has no density in general; "
+            "choose a finite n"
+        )
+
+
+def closed_form(scene):
+    """Marginal densities of the scenes whose variables are independent and known in closed form.
+
+    Returns
+    -------
+    dict
+        Name -> function of points that returns values and errors. For a velocity alone with white
+        noise, by quadrature; for obstacles with white noise, of the Gibbs measure
+        exp(-2 C_b/sigma^2 (y^2/2 + U_n(x))); empty for all other scenes.
+    """
+    if eigenfunctions.applies(scene):
+        return {"y": lambda y: quadrature.density(scene, y)}
+    if scene.noise.kind != "white" or not scene.mechanics.in_potential:
+        return {}
+    inverse = 2 * scene.damping / scene.noise.sigma**2
+    U = scene.potential_expression + scene.mechanics.added_potential
+    energy = vectorised(U.subs(penalization, scene.n), (STATE_VARIABLES[-1],))
+    end = mesh.box(scene, _DEEP)[STATE_VARIABLES[-1]]
+    lowest = float(np.min(energy(np.linspace(-end, end, 2001))))
+    wall, _, _ = scene.mechanics.penalty.at(scene.n)
+    pieces = [-end, -wall, 0.0, wall, end]
+
+    def shape(x):
+        return np.exp(-inverse * (energy(np.asarray(x, dtype=float)) - lowest))
+
+    parts = [quad(shape, *ends, epsabs=0, epsrel=1e-12, limit=200) for ends in pairwise(pieces)]
+    total, error = (sum(part) for part in zip(*parts, strict=True))
+
+    def velocity(y):
+        value = math.sqrt(inverse / (2 * math.pi)) * np.exp(-inverse * np.square(y) / 2)
+        return value, 4 * np.finfo(float).eps * value * (1 + inverse * np.square(y))
+
+    def displacement(x):
+        value = shape(x) / total
+        depth = inverse * np.abs(energy(np.asarray(x, dtype=float)))
+        return value, value * (error / total + 8 * np.finfo(float).eps * (1 + depth))
+
+    return {"y": velocity, "x": displacement}
+
+
+def bin_averages(scene, edges, tol):
+    """Invariant probabilities of bins, divided by their widths: what a histogram estimates.
+
+    Where friction or a wall concentrates the density, averages converge on grids on which its
+    values at points do not.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    edges : dict
+        Maps names of variables to the edges of their bins.
+    tol : float
+        Error allowed, relative to the largest average of each variable.
+
+    Returns
+    -------
+    dict
+        Name -> (averages, errors), of each bin.
+
+    Raises
+    ------
+    SceneError
+        If n is infinite.
+    ToleranceError
+        If `tol` cannot be met.
+    """
+    _require_finite(scene)
+    if closed := closed_form(scene):
+        found, error = {}, {}
+        for name, ends in edges.items():
+            points, weights = _averaging(ends, _kinks(scene, name))
+            value, inexact = closed[name](points)
+            found[name] = weights @ value
+            coarse, fewer = _averaging(ends, _kinks(scene, name), _GAUSS - 6)
+            other = fewer @ closed[name](coarse)[0]
+            error[name] = np.abs(found[name] - other) + weights @ inexact
+        return {name: (found[name], error[name]) for name in found}
+    grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, 1)
+    found = None
+    while True:
+        previous, found = found, _averages_on(scene, grid, edges, tol * _RESIDUAL)
+        if previous is not None:
+            error = {name: np.abs(found[name] - previous[name]) for name in found}
+            relative = max(np.max(error[name]) / np.max(found[name]) for name in found)
+            if relative <= tol:
+                return {name: (found[name], error[name]) for name in found}
+        grid = tensor_grid.raised(grid)
+        if not tensor_grid.affordable(scene, grid):
+            raise ToleranceError(
+                f"the invariant density has a relative error of {relative:.1e} on the finest grid, "
+                f"above tol = {tol:g}; loosen tol"
+            )
+
+
+def _averages_on(scene, grid, edges, accuracy):
+    axes, solve = tensor_grid.solver(scene, grid)
+    masses = solve.stationary(accuracy).reshape([len(axis.nodes) for axis in axes.values()])
+    found = {}
+    for place, (symbol, axis) in enumerate(axes.items()):
+        if symbol.name in edges:
+            marginal = masses.sum(axis=tuple(k for k in range(len(axes)) if k != place))
+            points, weights = _averaging(edges[symbol.name], axis.edges)
+            found[symbol.name] = weights @ (axis.interpolation(points) @ (marginal / axis.weights))
+    return found
+
+
+def _kinks(scene, name):
+    return np.array([k for s, k in mesh.knots(scene).items() if s.name == name for k in (-k, k)])
+
+
+def _averaging(edges, cuts, count=None):
+    """Points, and the matrix that takes values there to averages over bins, cut at kinks."""
+    nodes, gauss = leggauss(count or _GAUSS)
+    inside = cuts[(cuts > edges[0]) & (cuts < edges[-1])]
+    pieces = np.unique(np.concatenate([edges, inside]))
+    half = np.diff(pieces) / 2
+    points = ((pieces[:-1] + half)[:, None] + half[:, None] * nodes).ravel()
+    weights = np.zeros((len(edges) - 1, len(half), len(nodes)))
+    place = np.clip(np.searchsorted(edges, pieces[:-1] + half) - 1, 0, len(edges) - 2)
+    weights[place, np.arange(len(half))] = half[:, None] * gauss
+    return points, weights.reshape(len(edges) - 1, -1) / np.diff(edges)[:, None]
+
+
+def _on(scene, grid, names, points, accuracy):
+    axes, solve = tensor_grid.solver(scene, grid)
+    shape = [len(axis.nodes) for axis in axes.values()]
+    masses = solve.stationary(accuracy).reshape(shape)
+    order = [symbol.name for symbol in axes]
+    at = {
+        symbol.name: axis.interpolation(points[symbol.name]) / axis.weights
+        for symbol, axis in axes.items()
+    }
+    found = {}
+    for key in [(name,) for name in names] + [tuple(names[-2:])] * (len(names) > 1):
+        rest = tuple(place for place, name in enumerate(order) if name not in key)
+        joint = masses.sum(axis=rest)
+        for place, name in enumerate(name for name in order if name in key):
+            joint = np.moveaxis(np.tensordot(at[name].toarray(), joint, axes=(1, place)), 0, place)
+        if [name for name in order if name in key] != list(key):
+            joint = joint.T
+        found[key] = joint
+    return found

@@ -1,0 +1,252 @@
+"""Mean and variance of int_0^tau (g - E g) from a point, for scenes with two state variables.
+
+With -A u = g - E g and -A h = 2 (g - E g) u - gamma^2, and P the semigroup of A,
+
+    w(tau) = u - r(tau),  E Delta^2 = gamma^2 tau + h - k(tau),
+    r_t = A r,  k_t = A k + 2 (g - E g) r,  (k, r) = (h, u) at 0,
+
+so that errors do not grow with tau. A is not sectorial: the pair (k, r) is projected, in L^2 of the
+invariant measure, on a rational Krylov space, whose poles are real and cost one factorisation
+each. The pole 0 is the Poisson solver and knows the slowest modes; the others resolve early times.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import scipy.linalg
+
+from nonsmooth.errors import ToleranceError
+from nonsmooth.grids import mesh, tensor_grid, uniform_refinement
+from nonsmooth.grids.generator import evaluate, start_row
+from nonsmooth.grids.solvers import EVEN, ODD
+
+_POLES = (0.0, 10.0)  # larger ones resolve earlier times, and what the grid does not
+_STEPS = range(12, 85, 6)  # dimensions of the Krylov space that are compared
+_SHARE = 0.05  # of the tolerance, for the projection
+_COARSE, _FINEST = 1, 9  # levels
+_LARGEST = 45_000  # grid points; each pole keeps its factors in memory
+_DEPENDENT = 1e-10  # a function this much smaller without what it shares with others
+_ROUNDING = 3e-11  # relative; against linear scenes it comes to 9e-12
+_GROWTH = 1e-12  # relative rate from which on a mode is taken to grow
+_APART = 1.8  # ratio of times at which the oscillation of errors is sampled
+_AROUND = 1.25  # the box holds the starting point with so much to spare
+
+
+def moments(scene, times, tol):
+    """Solve for w(start, tau) and v(start, tau), eq. (defvgyt).
+
+    Parameters
+    ----------
+    scene : Scene
+        With two state variables and a finite n.
+    times : numpy.ndarray, shape (t,)
+        tau >= 0, "1".
+    tol : float
+        Absolute error of v(tau)/tau that is aimed at.
+
+    Returns
+    -------
+    moments, errors : numpy.ndarray, shape (2, t)
+        w and v. The errors are those of `ladder.climb`; where that fails, what the last refinement
+        of the grid changes or, if larger, the sum of what its variables change each for itself,
+        and the box and the projection. They oscillate with tau, relative to which each is the
+        largest between tau / 2 and 2 tau.
+
+    Raises
+    ------
+    ToleranceError
+        If no projection is stable.
+    """
+    wanted, times = times, _with_neighbours(times)
+    scale = np.where(times > 0, times, 1.0)
+
+    def solve(grid):
+        return _on(scene, grid, times, _SHARE * tol * scale)
+
+    def share(error, _values):
+        return np.max(error[1] / (tol * scale))
+
+    grid = _first_grid(scene, tol)
+    last, error = uniform_refinement.climb(grid, solve, share) or _refined(
+        scene, grid, solve, share
+    )
+    # w is the difference of terms as large as the standard deviation
+    w, v = np.abs(last)
+    error += _ROUNDING * np.array([w + np.sqrt(v), v + w**2])
+    if not np.all(np.isfinite(error)):
+        raise ToleranceError(
+            "v(tau) has no stable projection on the grids of this scene; use simulate, or another n"
+        )
+    error /= scale
+    place = np.searchsorted(times, wanted)
+    near = [(times >= tau / 2) & (times <= 2 * tau) for tau in wanted]
+    largest = np.transpose([error[:, here].max(axis=1) for here in near])
+    return last[:, place], largest * scale[place]
+
+
+def _refined(scene, grid, solve, share):
+    """Refine where it matters; what comes closest to the tolerance, with its error."""
+    value, inexact = solve(grid)
+    least = dict.fromkeys(grid.levels, 0.0)
+    while True:
+        trials = {symbol: solve(grid.raised(symbol)) for symbol in grid.levels}
+        changes = {s: np.maximum(np.abs(trials[s][0] - value), least[s]) for s in trials}
+        coarse = [s for s in changes if not share(changes[s], value) <= 1 / (2 * len(changes))]
+        finer = grid
+        for symbol in coarse:
+            finer = finer.raised(symbol)
+        if not coarse or not _affordable(scene, tensor_grid.raised(finer)):
+            break
+        grid, least = finer, least | {s: changes[s] / uniform_refinement.GAIN for s in coarse}
+        value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
+    last, inexact = solve(tensor_grid.raised(grid))
+    beyond = np.abs(solve(replace(grid, margin=tensor_grid.MARGIN))[0] - value)
+    return last, np.maximum(np.abs(last - value), sum(changes.values())) + 2 * (beyond + inexact)
+
+
+def _with_neighbours(times):
+    """Sort times and add some between half of the smallest and twice the largest positive one."""
+    positive = times[times > 0]
+    if not len(positive):
+        return np.unique(times)
+    first, last = positive.min() / 2, 2 * positive.max()
+    count = 1 + math.ceil(math.log(last / first) / math.log(_APART))
+    return np.unique(np.concatenate([times, np.geomspace(first, last, count)]))
+
+
+def _first_grid(scene, tol):
+    grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, 1)
+    ends = {
+        symbol: max(end, _AROUND * abs(scene.start.get(symbol.name, 0.0)))
+        for symbol, end in grid.ends.items()
+    }
+    return replace(grid, ends=ends, levels=dict.fromkeys(grid.levels, _COARSE))
+
+
+def _affordable(scene, grid):
+    return (
+        math.prod(len(axis.nodes) for axis in mesh.axes(scene, grid.ends, grid.levels).values())
+        <= _LARGEST
+        and max(grid.levels.values()) <= _FINEST
+    )
+
+
+def _on(scene, grid, times, allowed):
+    """Solve for w and v on one grid; with what the last Krylov vectors change in them."""
+    axes, solver = tensor_grid.solver(scene, grid)
+    g = solver.fold(evaluate(scene.numerical_observable(), axes))
+    u, mean = solver.solve(g, ODD)
+    g = g - mean
+    masses = solver.fold(solver.stationary())
+    masses /= masses.sum()
+    if not solver.mirrored:
+        u -= masses @ u
+    h, gamma2 = solver.solve(2 * g * u, EVEN)
+    krylov = _Krylov(solver, g, masses)
+    slow, fast = _Functions(masses, [np.ones_like(g), h]), _Functions(masses, [u, g])
+    at = _at_start(scene, axes)
+    found = inexact = np.full((2, len(times)), np.nan)
+    for dimension in _STEPS:
+        krylov.enlarge(dimension, slow, fast)
+        value = _evolve(solver, slow, fast, g, (h, u), gamma2, times, at)
+        if value is None:
+            continue
+        found, inexact = value, np.abs(value - found)
+        if np.all(inexact[1] <= allowed):
+            break
+    return found, inexact
+
+
+class _Functions:
+    """Orthonormal functions in L^2 of the absolute value of a measure."""
+
+    def __init__(self, masses, functions=()):
+        # on coarse grids masses may be negative where they are small
+        self.masses = np.abs(masses) + np.finfo(float).eps * np.max(masses)
+        self.rows = np.empty((0, len(masses)))
+        for function in functions:
+            self.add(function)
+
+    def dot(self, functions):
+        """Coefficients of functions, shape (k, ...)."""
+        return (self.rows * self.masses) @ functions
+
+    def add(self, function):
+        """Orthonormalise a function and append it, unless it depends on the others."""
+        size = math.sqrt(self.masses @ function**2)
+        if size == 0:
+            return False
+        rest = function / size
+        for _ in range(2):
+            rest = rest - self.dot(rest) @ self.rows
+        size = math.sqrt(self.masses @ rest**2)
+        if size < _DEPENDENT:
+            return False
+        self.rows = np.vstack([self.rows, rest / size])
+        return True
+
+
+class _Krylov:
+    """Rational Krylov space of the pair (k, r), from (0, g)."""
+
+    def __init__(self, solver, g, masses):
+        self.solver, self.g, self.masses = solver, g, masses
+        self.pairs = _Functions(np.concatenate([masses, masses]), [np.concatenate([0 * g, g])])
+        self.exhausted = False
+
+    def enlarge(self, dimension, slow, fast):
+        """Add pairs up to a dimension, and their parts to the two lists of functions."""
+        while len(self.pairs.rows) < dimension and not self.exhausted:
+            shift = _POLES[len(self.pairs.rows) % len(_POLES)]
+            k, r = np.split(self.pairs.rows[-1], 2)
+            r = self._resolvent(r, ODD, shift)
+            k = self._resolvent(k + 2 * self.g * r, EVEN, shift)
+            self.exhausted = not self.pairs.add(np.concatenate([k, r]))
+            if not self.exhausted:
+                k, r = np.split(self.pairs.rows[-1], 2)
+                slow.add(k)
+                fast.add(r)
+
+    def _resolvent(self, values, parity, shift):
+        if shift:
+            return self.solver.resolvent(values, parity, shift)
+        solution, _ = self.solver.solve(values, parity)
+        odd = self.solver.mirrored and parity == ODD
+        return solution if odd else solution - self.masses @ solution
+
+
+def _evolve(solver, slow, fast, g, start, gamma2, times, at):
+    """Find w and v from the projected equations of k (`slow`) and r (`fast`); None if they grow."""
+    k0, r0 = slow.dot(start[0]), fast.dot(start[1])
+    many = len(k0)
+    matrix = np.zeros((many + len(r0) + 1,) * 2)
+    matrix[:many, :many] = slow.dot(solver.matrix(EVEN) @ slow.rows.T)
+    matrix[:many, many:-1] = slow.dot(2 * g[:, None] * fast.rows.T)
+    matrix[many:-1, many:-1] = fast.dot(solver.matrix(ODD) @ fast.rows.T)
+    # grids have spurious growing modes of high frequency; a space that has caught one is of no use
+    if _grows(matrix[1:many, 1:many]) or _grows(matrix[many:-1, many:-1]):
+        return None
+    # the exponential's last column is the change since the start, without cancellation
+    matrix[:-1, -1] = matrix[:-1, :-1] @ np.concatenate([k0, r0])
+    changes = np.array([scipy.linalg.expm(tau * matrix)[:-1, -1] for tau in times])
+    w = -changes[:, many:] @ at(solver, fast.rows, ODD)
+    return np.array([w, gamma2 * times - changes[:, :many] @ at(solver, slow.rows, EVEN) - w**2])
+
+
+def _grows(matrix):
+    return np.max(np.linalg.eigvals(matrix).real, initial=0.0) > _GROWTH * np.max(np.abs(matrix))
+
+
+def _at_start(scene, axes):
+    """Return what evaluates functions (rows) of a parity at the starting point."""
+    start, mirrored = (start_row(scene, axes, side) for side in (1, -1))
+
+    def at(solver, rows, parity):
+        if not solver.mirrored:
+            return rows @ start
+        whole = (start + parity * mirrored) / 2  # on faces, the mean of both sides
+        half = rows.shape[1]
+        return rows @ (whole[:half] + parity * whole[half:][::-1])
+
+    return at

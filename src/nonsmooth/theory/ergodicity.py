@@ -1,0 +1,210 @@
+"""V-uniform ergodicity (Theorem thm1) and the bound of Poisson solutions (Theorem thm2), measured.
+
+The semigroup is stepped in time, so that the rate of decay owes nothing to eigenvalues, and norms
+are weighted with the paper's own Lyapunov function V_n. Norms on a box do not see how long a path
+from infinity takes to come back; there the drift is linear, and its eigenvalues say it.
+"""
+
+import math
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.estimate import Estimate
+from nonsmooth.grids import tensor_grid
+from nonsmooth.grids.generator import evaluate
+from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.theory import lyapunov
+
+_DEPTH = 20.0  # the density at the edge of the box is exp(-_DEPTH) of its maximum
+_COARSE, _FINE = 1, 2  # levels
+_SETTLED, _FLOOR = 1e-3, 1e-10  # of the norm at the start, between which the rate is taken
+# eigenvalues that coincide, or nearly, make the norm t^k exp(-rate t), of which the slope in the
+# middle of an interval is k/t too small: in its second half, 3.7 times what it has changed since
+# all of it, and half as much again for complex pairs
+_UNSETTLED = 5.6
+_LONGEST = 20_000  # steps
+_TRUSTED = 0.75  # of a box, in whose corners the solution sees where it ends
+_POINTS, _NEAREST = 60, 1e-4  # points on each side of 0, and the first of them
+_ROUNDS, _NEAR = 6, 13  # closer looks at the largest value, and points of each variable in them
+_ROUNDING = 1e-11  # relative; against linear scenes it comes to 2e-12
+_GAMMA = 1 - math.sqrt(0.5)  # of the L-stable, singly diagonal Runge-Kutta scheme of order two
+
+
+@dataclass(frozen=True)
+class Bound:
+    """The smallest C with |u| <= C (V_n + 1) on a box, for the Poisson solution u of mean zero.
+
+    Attributes
+    ----------
+    constant, error : float
+        The error is what a finer grid and the width of the box change.
+    edge : float
+        The same C on the surface of the box; below `constant` unless C grows with the box.
+    """
+
+    constant: float
+    error: float
+    edge: float
+
+
+def decay_rate(scene, step=0.1):
+    """Rate at which sup |P_t f - m(f)| / (V_n + 1) decays on a box, the slower of f = g and V_n.
+
+    Parameters
+    ----------
+    scene : Scene
+        With one or two state variables, a finite n, and covered by the paper's theorems.
+    step : float
+        Time step, "1".
+
+    Returns
+    -------
+    Estimate
+        The error is the sum of what twice the step, a coarser grid and an earlier window change.
+
+    Raises
+    ------
+    SceneError
+        If the scene has more variables or no Lyapunov function.
+    ToleranceError
+        If the decay is too slow for the step, or is no exponential yet.
+    """
+    _require_grid(scene)
+    began = time.perf_counter()
+    slow, _ = _rate(scene, _COARSE, 2 * step)
+    coarse, _ = _rate(scene, _COARSE, step)
+    value, earlier = _rate(scene, _FINE, step)
+    error = abs(slow - coarse) + abs(value - coarse) + _UNSETTLED * abs(value - earlier)
+    if not error < value / 2:
+        raise ToleranceError(
+            f"P_t f decays at the rate {value:.3g} with an error of {error:.1g}: the step is too "
+            "long, or eigenvalues nearly coincide; take a shorter step or another scene"
+        )
+    return Estimate(value, error, "time stepping", time.perf_counter() - began)
+
+
+def poisson_bound(scene, enlargement=2.0):
+    """Find the constant C of |u| <= C (V_n + 1), u the Poisson solution of g - E g.
+
+    Parameters
+    ----------
+    scene : Scene
+        As for `decay_rate`.
+    enlargement : float
+        Width of the box relative to that which holds the invariant density, above 1.
+
+    Returns
+    -------
+    Bound
+
+    Raises
+    ------
+    SceneError
+        If the scene has more variables or no Lyapunov function.
+    ToleranceError
+        If the grid does not resolve where |u| / (V_n + 1) is large.
+    """
+    _require_grid(scene)
+    narrow, _ = _largest(scene, _FINE, (enlargement - 1) / 2)
+    coarse, _ = _largest(scene, _COARSE, enlargement - 1)
+    constant, edge = _largest(scene, _FINE, enlargement - 1)
+    error = abs(constant - coarse) + abs(constant - narrow) + _ROUNDING * constant
+    if not error < constant / 2:
+        raise ToleranceError(
+            f"|u| / (V + 1) = {constant:.3g} has an error of {error:.1g}: the grid does not "
+            "resolve the narrow valley of V; choose a smaller n"
+        )
+    return Bound(constant, error, edge)
+
+
+def _require_grid(scene):
+    if len(scene.state) > 2 or math.isinf(scene.n):
+        raise SceneError(
+            "the decay in the V-norm is computed for one or two state variables and a finite n, "
+            f"not for ({', '.join(scene.state)}) at n = {scene.n:g}; choose another scene"
+        )
+
+
+def _discretised(scene, level, margin=0.0):
+    grid = tensor_grid.fitted(scene, _DEPTH, _COARSE)
+    grid = replace(grid, levels=dict.fromkeys(grid.levels, level), margin=margin)
+    axes, solver = tensor_grid.solver(scene, grid)
+    return axes, solver, evaluate(scene.numerical_observable(), axes)
+
+
+def _lyapunov(scene, axes, points=None):
+    values = {symbol: evaluate(symbol, axes, points) for symbol in axes}
+    return lyapunov.evaluate(scene, values, "value")[0]
+
+
+def _largest(scene, level, margin=0.0):
+    """Find the largest |u| / (V_n + 1) in the trusted part of a box, and on its surface."""
+    axes, solver, g = _discretised(scene, level, margin)
+    u = solver.unfold(solver.solve(solver.fold(g), ODD)[0], ODD)
+    u -= solver.stationary() @ u
+    u = u.reshape([len(axis.nodes) for axis in axes.values()])
+
+    def ratio(points):
+        values = u
+        for place, (symbol, axis) in enumerate(axes.items()):
+            at = axis.interpolation(points[symbol]).toarray()
+            values = np.moveaxis(np.tensordot(at, values, (1, place)), 0, place)
+        return np.abs(values) / (_lyapunov(scene, axes, points).reshape(values.shape) + 1)
+
+    points = {}
+    for symbol, axis in axes.items():  # V_n has a narrow valley at 0
+        positive = np.geomspace(_NEAREST, _TRUSTED * axis.edges[-1], _POINTS)
+        points[symbol] = np.concatenate([-positive[::-1], [0.0], positive])
+    found = ratio(points)
+    inner = np.pad(np.ones([k - 2 for k in found.shape]), 1)
+    largest, edge = np.max(found), np.max(found[inner == 0])
+    for _ in range(_ROUNDS):
+        best = np.unravel_index(np.argmax(found), found.shape)
+        for (symbol, values), place in zip(points.items(), best, strict=True):
+            ends = values[max(place - 1, 0)], values[min(place + 1, len(values) - 1)]
+            points[symbol] = np.linspace(*ends, _NEAR)
+        found = ratio(points)
+        largest = max(largest, np.max(found))
+    return float(largest), float(edge)
+
+
+def _rate(scene, level, step):
+    """Rate of decay in the second half of the time from _SETTLED to _FLOOR, and in all of it."""
+    norm = np.max([part / part[0] for part in _norms(scene, level, step)], axis=0)
+    window = np.log(norm[np.argmax(norm < _SETTLED) :])
+
+    def slope(values):
+        # a complex pair of eigenvalues makes the norm oscillate, which the weights suppress
+        place = np.arange(len(values))
+        weights = np.sin(np.pi * (place + 0.5) / len(values))  # squared by polyfit
+        return -float(np.polyfit(place * step, values, 1, w=weights)[0])
+
+    return slope(window[len(window) // 2 :]), slope(window)
+
+
+def _norms(scene, level, step):
+    """Norms of P_t f - m(f) at multiples of the step until all are below _FLOOR; f = g and V."""
+    axes, solver, g = _discretised(scene, level)
+    V = _lyapunov(scene, axes)
+    masses, shift = solver.stationary(), 1 / (_GAMMA * step)
+    weight = solver.fold(V + 1)
+    parts = [(solver.fold(f - masses @ f), parity) for f, parity in ((g, ODD), (V, EVEN))]
+    masses = solver.fold(masses) / np.sum(solver.fold(masses))
+    norms = [[np.max(np.abs(f) / weight)] for f, _ in parts]
+    while any(norm[-1] > _FLOOR * norm[0] for norm in norms):
+        if len(norms[0]) > _LONGEST:
+            raise ToleranceError(
+                f"P_t f has not decayed in {_LONGEST} steps of {step:g}; take a longer step"
+            )
+        for k, (f, parity) in enumerate(parts):
+            stage = shift * solver.resolvent(f, parity, shift)
+            f = f + (1 / _GAMMA - 1) * (stage - f)
+            f = shift * solver.resolvent(f, parity, shift)
+            if parity == EVEN or not solver.mirrored:
+                f -= masses @ f  # is 0 but for rounding, which would add up
+            parts[k] = f, parity
+            norms[k].append(np.max(np.abs(f) / weight))
+    return np.array(norms)

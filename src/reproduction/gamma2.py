@@ -1,0 +1,60 @@
+"""gamma^2 of a scene by two methods that share nothing, side by side."""
+
+import numpy as np
+
+from nonsmooth.errors import CheckError
+from reproduction.tables import scientific
+
+ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7
+
+
+def compared(name, scene, solved, sampled):
+    """Compare gamma^2 from the Poisson equation with that by Monte Carlo.
+
+    Parameters
+    ----------
+    name : str
+    scene : Scene
+    solved : mapping
+        `gamma2` and its error bound `gamma2_error`.
+    sampled : mapping
+        `gamma2`, its standard error `gamma2_error`, the `bias` of the time step, which is
+        subtracted, and its standard error `bias_error`.
+
+    Returns
+    -------
+    plain, cells : dict
+        A table's row to compute with and the cells to read, without those that name the scene.
+
+    Raises
+    ------
+    CheckError
+        If the two values contradict each other.
+    """
+    value, bound = float(solved["gamma2"]), float(solved["gamma2_error"])
+    drawn = {key: float(sampled[key]) for key in ("gamma2", "gamma2_error", "bias")}
+    spread = float(np.hypot(drawn["gamma2_error"], float(sampled["bias_error"])))
+    corrected = drawn["gamma2"] - drawn["bias"]
+    deviation = (corrected - value) / spread
+    if not abs(corrected - value) <= ALLOWED * spread + bound:
+        raise CheckError(
+            f"gamma^2 of {name} is {value:.6g} +- {bound:.1g}, but {corrected:.6g} +- "
+            f"{spread:.1g} by Monte Carlo; one of the two is wrong"
+        )
+    plain = (
+        {"scene": name, "variables": len(scene.state), "gamma2": value, "gamma2_error": bound}
+        | {f"monte_carlo_{key}": number for key, number in drawn.items()}
+        | {"monte_carlo_corrected": corrected, "spread": spread, "deviation": deviation}
+    )
+    shown = _decimals(spread) + 1
+    cells = {
+        r"$\gamma^2$": f"{value:.{min(_decimals(bound), 12)}f}",
+        "error": scientific(bound, bound=True),
+        "Monte Carlo": rf"${corrected:.{shown}f} \pm {spread:.{shown}f}$",
+        "deviation": rf"${deviation:+.1f}\,\sigma$",
+    }
+    return plain, cells
+
+
+def _decimals(error):
+    return max(2, int(np.ceil(-np.log10(error))))

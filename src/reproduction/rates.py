@@ -1,0 +1,147 @@
+"""How fast a penalized scene approaches its non-smooth limit as n grows, on paths and in law.
+
+Both are driven by the same Brownian path. The limit is simulated with the same steps, so that
+what the steps change in both cancels in the difference.
+"""
+
+import math
+
+import numpy as np
+from scipy import stats
+
+from nonsmooth.errors import ToleranceError
+from nonsmooth.line.dry_friction import friction_variance
+from nonsmooth.paths import schemes
+from nonsmooth.paths.ensembles import parallel
+from nonsmooth.paths.kernels.panel import STATE, new_panel
+from nonsmooth.paths.kernels.random_numbers import blocks
+from nonsmooth.paths.time_loop import march
+from nonsmooth.scenes.models import STATE_VARIABLES
+from nonsmooth.statistics.sampled_gamma2 import integrals
+
+_LEVEL = 0.95
+
+
+def contact_time(scene):
+    """Time scale of the penalty, which steps must resolve.
+
+    That of an elastic contact, n^(-1/2); of a relaxation, 1/n; of a Brownian velocity within
+    |y| < 1/n, n^(-2).
+    """
+    if scene.mechanics.in_potential:
+        return scene.n**-0.5
+    diffuses = scene.mechanics.argument == scene.noise.driven
+    return scene.n**-2.0 if diffuses else 1 / scene.n
+
+
+def largest_distances(scene, variable, horizon, step, paths, seed, threads=None):
+    """Simulate sup_{t <= T} |z_n(t) - z(t)|, z one of the variables of the state, over the steps.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    variable : {"y", "x"}
+    horizon : float
+        T, "1".
+    step : float
+        Longest time step, "1".
+    paths : int
+    seed : int or tuple
+    threads : int, optional
+
+    Returns
+    -------
+    numpy.ndarray, shape (paths,)
+    """
+    row = STATE[[s.name for s in STATE_VARIABLES].index(variable)]
+    steps = math.ceil(horizon / step)
+    pair = [
+        (one, schemes.coefficients(one, "strang", horizon / steps, "float64"))
+        for one in (scene, scene.with_n(math.inf))
+    ]
+
+    def run(job):
+        block, count = job
+        panels = [new_panel(one, seed, block, "float64") for one, _ in pair]
+        largest = np.zeros(count)
+        for _ in range(steps):
+            for panel, (_, s) in zip(panels, pair, strict=True):
+                march(s, panel, count, 1, -np.inf, np.inf)
+            difference = panels[0].data[row, :count] - panels[1].data[row, :count]
+            np.maximum(largest, np.abs(difference), out=largest)
+        return largest
+
+    return np.concatenate(parallel(run, blocks(0, paths), threads))
+
+
+def variance_difference(scene, horizon, step, paths, seed, threads=None):
+    """Difference of Var D(T) / T between a penalized scene and its limit, on the same paths.
+
+    Parameters
+    ----------
+    scene, horizon, step, paths, seed, threads
+        As for `largest_distances`.
+
+    Returns
+    -------
+    value, error : float
+        The error is the standard error.
+    """
+    penalized, limit = (
+        integrals(one, [horizon], step, paths, seed, threads=threads, control=False)[0, 0]
+        for one in (scene, scene.with_n(math.inf))
+    )
+    square = (penalized - penalized.mean()) ** 2 - (limit - limit.mean()) ** 2
+    return square.mean() / horizon, square.std(ddof=1) / math.sqrt(paths) / horizon
+
+
+def growth_difference(scene):
+    """gamma_n^2 - gamma^2 of dry friction with white noise and g = y, and its error."""
+    (value, error), (limit, limit_error) = (
+        friction_variance(n, scene.damping) for n in (scene.n, math.inf)
+    )
+    return value - limit, error + limit_error
+
+
+def slope(n, value, error):
+    """Fit log |value| = c + slope log n by weighted least squares.
+
+    Parameters
+    ----------
+    n, value, error : array_like, shape (k,)
+        Values of independent errors; those not above two of their errors are left out.
+
+    Returns
+    -------
+    slope, half_width : float
+        With the half width of a 95 % interval by the delta method (the error of the logarithm is
+        the relative one). If the points scatter about the line more than their errors explain, as
+        they do where a further order counts, the scatter takes the place of the errors, with
+        Student's factor.
+
+    Raises
+    ------
+    ToleranceError
+        If fewer than three values are left.
+    """
+    n, value, error = (np.asarray(item, dtype=float) for item in (n, np.abs(value), error))
+    kept = value > 2 * error
+    if np.count_nonzero(kept) < 3:
+        raise ToleranceError(
+            f"of the {len(n)} differences to the limit {np.count_nonzero(kept)} are above two of "
+            "their errors, and a slope needs three; take more paths or a longer horizon"
+        )
+    x, y = np.log(n[kept]), np.log(value[kept])
+    weight = (value / np.maximum(error, 1e-12 * value))[kept] ** 2
+    # none counts more than ten times the others together can
+    weight = np.minimum(weight, 100 * np.median(weight))
+    centre = np.average(x, weights=weight)
+    spread = np.sum(weight * (x - centre) ** 2)
+    found = np.sum(weight * (x - centre) * y) / spread
+    rest = y - np.average(y, weights=weight) - found * (x - centre)
+    freedom = len(x) - 2
+    scatter = np.sum(weight * rest**2) / freedom
+    by_errors = stats.norm.ppf((1 + _LEVEL) / 2) / math.sqrt(spread)
+    by_scatter = stats.t.ppf((1 + _LEVEL) / 2, freedom) * math.sqrt(scatter / spread)
+    return float(found), float(max(by_errors, by_scatter))

@@ -1,0 +1,88 @@
+"""Tables in three forms from one content: CSV to compute with, LaTeX and Typst to read.
+
+Cells are LaTeX, with mathematics between dollar signs.
+"""
+
+from pathlib import Path
+
+import tylax
+
+from reproduction.files import whole
+from reproduction.jobs import inputs, job
+
+
+def typeset(build, task):
+    """Run a task whose outputs are one table as .csv, .tex and .typ.
+
+    Parameters
+    ----------
+    build : callable
+        Takes the task's input artifacts and parameters by name; returns the table to compute
+        with and the table to read, two pandas.DataFrame.
+    task : object
+        See `nonsmooth.jobs`.
+    """
+    with job(task.log[0]):
+        plain, cells = build(**inputs(task), **dict(task.params.items()))
+        render = {
+            ".csv": lambda: plain.to_csv(index=False),
+            ".tex": lambda: latex(cells),
+            ".typ": lambda: typst(cells),
+        }
+        for path in map(Path, task.output):
+            with whole(path) as partial:
+                partial.write_text(render[path.suffix](), encoding="utf-8")
+
+
+def latex(cells):
+    """Return a booktabs tabular."""
+    return cells.to_latex(index=False, escape=False, column_format="l" * len(cells.columns))
+
+
+def typst(cells):
+    """Return a Typst table with three rules, as booktabs has them.
+
+    ``cells.attrs["widths"]`` are Typst's widths of the columns, where text has to be broken.
+    """
+    widths = cells.attrs.get("widths")
+    columns = f"({', '.join(widths)})" if widths else len(cells.columns)
+    header = ", ".join(f"[{_typst(str(name))}]" for name in cells.columns)
+    rows = "".join(
+        "  " + ", ".join(f"[{_typst(str(cell))}]" for cell in row) + ",\n"
+        for row in cells.itertuples(index=False)
+    )
+    return (
+        f"#table(\n  columns: {columns},\n  table.hline(),\n"
+        f"  table.header({header}),\n  table.hline(stroke: 0.4pt),\n{rows}  table.hline(),\n)\n"
+    )
+
+
+def _typst(cell):
+    parts = cell.split("$")
+    if len(parts) % 2 == 0:
+        raise ValueError(f"unbalanced dollar signs in the cell {cell!r}")
+    return "".join(
+        f"${tylax.latex_to_typst(part)}$" if k % 2 else part for k, part in enumerate(parts)
+    )
+
+
+def scientific(value, digits=1, bound=False):
+    """Spell a number as LaTeX mathematics in scientific notation; a bound is rounded up."""
+    value = float(value) * (1 + 10.0**-digits / 2 if bound else 1)
+    mantissa, exponent = f"{value:.{digits}e}".split("e")
+    return rf"${mantissa} \times 10^{{{int(exponent)}}}$"
+
+
+def penalization(n):
+    """Spell n as LaTeX mathematics."""
+    return r"$\infty$" if n == float("inf") else f"${n:g}$"
+
+
+def symbol(name):
+    """Spell a variable, or an observable that is one, as LaTeX mathematics."""
+    return f"${name}$" if len(name) == 1 else rf"$\{name}$"
+
+
+def sorted_by(name, datasets):
+    """Return artifacts in the order of a scalar coordinate."""
+    return sorted(datasets, key=lambda dataset: float(dataset[name]))

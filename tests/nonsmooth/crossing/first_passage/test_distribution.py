@@ -1,0 +1,371 @@
+"""First passage by Case modes, and the Milne problem."""
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+from scipy.interpolate import CubicSpline
+from scipy.special import erfc
+
+import nonsmooth as ns
+from nonsmooth.boundary_layer.asymmetric_line import walls
+from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
+from nonsmooth.boundary_layer.symmetric_line import expansion
+from nonsmooth.crossing.first_passage import inversion as inversion
+from nonsmooth.crossing.first_passage.contours import hyperbola
+from nonsmooth.errors import AssumptionWarning
+from nonsmooth.kinetic.case_modes import first_passage
+from nonsmooth.kinetic.ordinates_line import ordinates
+
+FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
+# g without symmetry, centred; 4e-16 is the error of the mean
+SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
+DIGITS = 1e-7  # a unit in the last of seven
+
+
+class TestContour:
+    """The trapezoidal rule on hyperbolas converges geometrically."""
+
+    @pytest.mark.parametrize(("ratio", "count", "rate"), [(1.01, 10, 2.0), (10.0, 24, 0.9)])
+    def test_inverts_to_the_declared_rate(self, ratio, count, rate):
+        """exp(-sqrt z)/z is the transform of erfc(1/(2 sqrt t)); error exp(-rate count)."""
+        contour = hyperbola(1.0, ratio, count).until(count)
+        times = np.linspace(1.0, ratio, 7)
+        value = contour.invert(np.exp(-np.sqrt(contour.nodes)) / contour.nodes, times)
+        assert np.max(np.abs(value - erfc(0.5 / np.sqrt(times)))) < np.exp(-rate * count)
+
+
+class TestMilne:
+    """kappa and the constants of order 2 against closed forms."""
+
+    def test_ornstein_uhlenbeck(self):
+        """Without friction kappa = -zeta(1/2) sigma / (sqrt(2) C_b^(3/2)) (Marshall & Watson)."""
+        for damping in (0.1, 0.3, 1.0, 5.0):
+            scene = ns.Scene("elasto_plastic", potential="0", damping=damping)
+            found = ns.extrapolation_length(scene)
+            exact = -float(mpmath.zeta(0.5)) / np.sqrt(2) / damping**1.5
+            assert abs(found.value - exact) <= found.error + 1e-9
+            assert found.error <= 1e-8
+
+    def test_stretch_of_ornstein_uhlenbeck(self):
+        """Waves see the phase -sum atan(k / mu), with mu^2 = 2 C_b^3 j - k^2 (Marshall & Watson).
+
+        Its cubic term has kappa_3 = -zeta(3/2) sigma^3 / (12 sqrt(2) C_b^(9/2)); there is no
+        dispersion.
+        """
+        for damping in (0.3, 1.0, 5.0):
+            found, errors = expansion(ns.Scene("elasto_plastic", potential="0", damping=damping))
+            exact = -float(mpmath.zeta(1.5)) / 12 / np.sqrt(2) / damping**4.5
+            assert abs(found.stretch - exact) <= 2 * errors.stretch + 1e-9 * abs(exact)
+            assert abs(found.dispersion) <= 2 * errors.dispersion + 1e-12 / damping**6
+
+    def test_published_constants(self):
+        """METHODS, section 3, whose D and B are halves of sums with ten digits."""
+        found, errors = expansion(FRICTION)
+        for name, value in (
+            ("diffusion", 0.06884820644975),
+            ("length", 0.2911259630),
+            ("dispersion", 0.00369027612),
+            ("corner", -0.0360711815),
+            ("start", -0.0188637460),
+        ):
+            assert abs(getattr(found, name) - value) < 2e-9, name
+            assert getattr(errors, name) < 1e-8
+
+    @pytest.mark.parametrize("n", [1.0, 1e4, 1e6, np.inf])
+    def test_diffusion_is_half_gamma2(self, n):
+        """D against the quadrature of gamma^2."""
+        found, errors = expansion(FRICTION.with_n(n))
+        gamma2 = ns.asymptotic_variance(FRICTION.with_n(n)).value
+        assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
+
+    def test_two_lengths_of_a_g_without_symmetry(self, monkeypatch):
+        """Those of the mirrored scene swapped, D of the quadrature; equal ones where g is odd."""
+        lower, upper = ns.extrapolation_length(SKEWED)
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        other_lower, other_upper = ns.extrapolation_length(mirrored)
+        assert abs(lower.value - other_upper.value) <= lower.error + other_upper.error + 1e-12
+        assert abs(upper.value - other_lower.value) <= upper.error + other_lower.error + 1e-12
+        found, errors = walls(SKEWED)
+        gamma2 = ns.asymptotic_variance(SKEWED).value
+        assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)  # the whole grid
+        for length in ns.extrapolation_length(FRICTION):
+            assert abs(length.value - 0.2911259630) < 2e-9
+
+    def test_needs_a_centred_g(self):
+        """The message has the mean."""
+        with pytest.raises(ns.NonsmoothError, match="subtract"):
+            ns.extrapolation_length(ns.Scene("friction", observable="y + abs(y)/2"))
+
+    def test_refuses_what_it_cannot(self):
+        """Colored noise has no such solver."""
+        with pytest.raises(ns.NonsmoothError, match="white noise"):
+            expansion(ns.Scene("friction", "langevin"))
+        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
+            ns.crossing_probability(
+                ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
+            )
+        with pytest.raises(ns.NonsmoothError, match="no extrapolation length"):
+            ns.extrapolation_length(ns.Scene("obstacle", potential="x**2/2"))
+
+
+class TestMilneOfTwoVariables:
+    """kappa where the generator is not self-adjoint."""
+
+    def test_ornstein_uhlenbeck(self):
+        """A spring too weak to matter: the closed form of one variable, by the solver of two."""
+        found = ns.extrapolation_length(ns.Scene("elasto_plastic", potential="1e-9*x**2"))
+        exact = -float(mpmath.zeta(0.5)) / np.sqrt(2)
+        # the spring adds of the order of its stiffness
+        assert abs(found.value - exact) <= found.error + 1e-8
+        assert found.error <= 1e-3
+
+    def test_yielding_displacement(self):
+        """The displacement crosses b when the plastic strain crosses b - 1, for it yields at x = 1.
+
+        Exactly so at n = inf; at a finite n, x passes 1 by y/n, with y of order 1.
+        """
+        lengths = [
+            ns.extrapolation_length(
+                ns.Scene("elasto_plastic", potential="x**2/2", n=1e4, observable=g), tol=1e-2
+            )
+            for g in ("y", "plastic_strain_rate")
+        ]
+        total, plastic = lengths
+        assert abs(total.value - (plastic.value - 1)) <= total.error + plastic.error + 1e-4
+
+    def test_corrected_formula(self):
+        """Against Monte Carlo, where the plain formula is off by 0.1; 4.5 sigma, and O(1/p)."""
+        scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
+        problem = scene, 0.6, [2.0], 100
+        found = ns.crossing_probability(*problem, method="corrected")
+        sampled = ns.crossing_probability(*problem, step=0.1, paths=4000, seed=1)
+        sigma = np.hypot(sampled.probability_error, sampled.step_bias_error)
+        difference = found.probability - sampled.probability + sampled.step_bias
+        order = (0.42 / 0.6) ** 2 / 100  # (kappa / b)^2 / p
+        assert np.all(np.abs(difference) <= 4.5 * sigma + order)
+        with pytest.raises(ns.NonsmoothError, match="use order=1"):
+            ns.crossing_probability(*problem, method="corrected", order=2)
+
+
+def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
+    """Spectral values."""
+    return ns.crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tol)
+
+
+class TestSampledLength:
+    """kappa by Monte Carlo."""
+
+    def test_of_dry_friction(self):
+        """Within the stated error, two standard errors and more; the seed is fixed."""
+        found = sampled_length(FRICTION, seed=1)
+        assert abs(found.value - 0.2911259630) < found.error
+        assert found.error < 0.2 * found.value
+
+    def test_poisson_solution_at_a_start(self):
+        """That of discrete ordinates, within the stated error, two standard errors and more."""
+        scene = ns.Scene("friction", start={"y": 0.5})
+        found, exact = sampled_poisson(scene, seed=1), expansion(scene)[0].poisson
+        assert abs(found.value - exact) < found.error
+        assert found.error < 0.3 * exact
+
+
+class TestSpectral:
+    """First passage against published values, Monte Carlo, and itself in the tails."""
+
+    @pytest.mark.parametrize(
+        ("p", "value"), [(1, 0.1606775), (10, 0.3674251), (100, 0.4595991), (1000, 0.4902812)]
+    )
+    def test_published_values(self, p, value):
+        """METHODS, section 2."""
+        found = exact(0.6, [2.0], p)
+        assert abs(found.probability[0] - value) < found.probability_error[0] + DIGITS
+
+    def test_monte_carlo_of_one_sided_and_unequal_thresholds(self):
+        """Two comparisons within 4.5 standard errors and the step's bias: false alarms 1e-5."""
+        for threshold in ((-np.inf, 0.6), (-0.3, 0.6)):
+            sample = ns.crossing_probability(
+                FRICTION, threshold, [2.0], 1, paths=40_000, step=0.02, seed=5
+            )
+            bias = np.abs(sample.step_bias) + sample.step_bias_error
+            gap = np.abs(sample.probability - exact(threshold, [2.0], 1).probability)
+            assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize("threshold", [(-np.inf, 0.6), (-0.3, 0.6)])
+    def test_monte_carlo_without_symmetry(self, threshold):
+        """As above; false alarms 1e-5."""
+        sample = ns.crossing_probability(SKEWED, threshold, [2.0], 1, paths=40_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        gap = np.abs(sample.probability - exact(threshold, [2.0], 1, SKEWED).probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize("z", [0.7, 0.3 + 2j, -0.5 + 2j])
+    def test_transform_without_symmetry(self, z):
+        """Converges in the degree, and the mirrored scene has the mirrored walls."""
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        for levels in ((-0.3, 0.6), (-np.inf, 0.6)):
+            values = [
+                first_passage(ordinates(SKEWED, degree, 1.0), z, *levels) for degree in (7, 9, 13)
+            ]
+            assert abs(values[0] - values[2]) < 1e-6
+            assert abs(values[1] - values[2]) < 1e-7
+            swapped = first_passage(ordinates(mirrored, 9, 1.0), z, -levels[1], -levels[0])
+            assert abs(swapped - values[1]) < 1e-9
+
+    def test_the_whole_grid_agrees_with_the_half(self, monkeypatch):
+        """Odd g, within both stated errors, with equal and unequal thresholds."""
+        thresholds = 0.6, (-0.3, 0.6)
+        halves = [exact(threshold, [2.0], 1) for threshold in thresholds]
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
+        for threshold, half in zip(thresholds, halves, strict=True):
+            whole = exact(threshold, [2.0], 1)
+            gap = np.abs(whole.probability - half.probability)
+            assert np.all(gap <= whole.probability_error + half.probability_error)
+
+    def test_rounding_of_the_half_grid_is_stated(self, monkeypatch):
+        """Late, where the modes of mirror images lose digits that those of the whole grid keep."""
+        halves = exact((-6.0, 7.0), [40.0, 400.0], 1)
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
+        wholes = exact((-6.0, 7.0), [40.0, 400.0], 1)
+        gap = np.abs(wholes.probability - halves.probability)
+        assert np.all(gap <= wholes.probability_error + halves.probability_error)
+
+    def test_soon_after_the_rise_without_symmetry(self):
+        """Poles off the axis still count; against a vertical line, on which nothing grows.
+
+        Its error, below 1e-9: exp(-24) of periods, rounding of 1e-12 times exp(8) F(8/t), terms
+        below 1e-12 of the largest, which is of order 20.
+        """
+        scene = ns.Scene("friction", observable="y + 0.5*sin(y)**2 - 0.0718281158505784")
+        found = exact(0.6, [0.5, 1.15, 23.0], 1, scene)
+        time, grid = 1.15, ordinates(scene, 9, 1.15, 12.0, 40.0, distances=(0.6, 0.6))
+        step = 2 * np.pi / (3 * time)
+        z, terms = 8 / time + 1j * step / 2, []
+        while not terms or abs(terms[-1]) > 1e-12 * abs(terms[0]):
+            terms.append(np.exp(z * time) * first_passage(grid, z, -0.6, 0.6) / z)
+            z += 1j * step
+        reference = step / np.pi * np.sum(terms).real
+        assert abs(found.probability[1] - reference) <= found.probability_error[1] + 1e-9
+
+    def test_reflection(self):
+        """-g(-y) crosses the thresholds swapped with the same probability."""
+        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+        one = exact((-0.3, 0.6), [2.0], 1, SKEWED)
+        other = exact((-0.6, 0.3), [2.0], 1, mirrored)
+        gap = np.abs(one.probability - other.probability)
+        assert np.all(gap <= one.probability_error + other.probability_error)
+
+    def test_two_zeros_of_g(self):
+        """A g that is positive in both tails; false alarms 1e-5."""
+        with pytest.warns(AssumptionWarning):
+            scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
+        sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        found = exact(0.6, [2.0], 1, scene, tol=1e-4)
+        gap = np.abs(sample.probability - found.probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-4
+
+    @pytest.mark.parametrize(("p", "tol"), [(1e4, 1e-7), (1e6, 1e-6)])
+    def test_late_times_of_one_wall(self, p, tol):
+        """The slow mode is 1e4 times the others; W is that of first order but for O(1/p)."""
+        found = exact((-np.inf, 0.6), [100.0], p, tol=tol)
+        formula = ns.crossing_probability(
+            FRICTION, (-np.inf, 0.6), [100.0], p, method="corrected"
+        ).probability
+        # (kappa / b)^2 / p and the stated error
+        bound = (0.2911259630 / 0.6) ** 2 / p + found.probability_error[0]
+        assert abs(found.probability[0] - formula[0]) < bound
+        assert found.probability_error[0] <= tol
+
+    def test_g_that_vanishes_on_a_half_line(self):
+        """Int g increases only, at twice the rate of y, while y > 0; false alarms 1e-5."""
+        scene = ns.Scene("friction", observable="y + abs(y)")
+        found = exact(0.6, [1.0], 1, scene)
+        sample = ns.crossing_probability(scene, 0.6, [1.0], 1, paths=20_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        gap = np.abs(sample.probability - found.probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    def test_survival_decays_like_its_leading_pole(self):
+        """To relative accuracy, far below the rounding of 1 - W."""
+        survival = exact(0.6, [60.0, 80.0, 100.0], 1000).survival.values
+        assert survival[-1] < 1e-13
+        assert survival[2] / survival[1] == pytest.approx(survival[1] / survival[0], rel=1e-3)
+
+    def test_rare_crossings_are_bounded_or_resolved(self):
+        """Below 1e-14 the bound is the error; above, the error is relative."""
+        found = exact(0.6, [1e-3, 0.05, 0.1], 1e4)
+        assert found.probability[0] == 0
+        assert found.probability_error[0] >= 1e-14
+        assert np.all(np.diff(found.probability) > 0)
+        assert found.probability_error[1] < 1e-3 * found.probability[1] < 1e-10
+
+    def test_contours_end_where_crossings_are_negligible(self, monkeypatch):
+        """Earlier times get none, though without a good bound: at most one at each level."""
+        begins = []
+        inverted = inversion._inverted
+
+        def recorded(*contour):
+            found = inverted(*contour)
+            begins.append(abs(found[0]))
+            return found
+
+        monkeypatch.setattr(inversion, "_inverted", recorded)
+        times = [0.01, 0.1, 0.3, 1.0, 5.0, 10.0, 20.0]
+        found = exact(0.6, times, 0.01, SKEWED, tol=1e-3)  # by two levels
+        assert np.sum(np.array(begins) < 1e-15) <= 2
+        assert np.all(found.probability[:2] == 0)
+        assert np.all(found.probability_error[:2] >= 1e-14)
+        assert found.probability[-1] > 0.1
+
+    def test_a_crossing_that_is_out_of_reach(self):
+        """The transform is below rounding on all of the axis that matters."""
+        found = exact(10.0, [0.005, 0.01], 0.01)
+        assert np.all(found.probability == 0)
+        assert np.all(found.probability_error <= 1e-13)
+        assert np.all(found.survival == 1)
+
+    @pytest.mark.parametrize(("threshold", "p"), [(0.05, 1), (0.6, 0.01), (3.0, 30)])
+    def test_a_curve_over_four_decades(self, threshold, p):
+        """A distribution that rises from nothing, within the error asked for."""
+        found = exact(threshold, np.geomspace(0.01, 100, 20), p)
+        errors = found.probability_error.values
+        assert np.all(np.diff(found.probability) >= -errors[1:] - errors[:-1])
+        assert np.all(found.probability_error <= 1e-7)
+        assert found.probability[0] < 1e-8
+        assert found.probability[-1] > 0.5
+
+    def test_transform_of_the_rise(self):
+        """The values have the transform at 2 that comes from a finer grid, on the axis.
+
+        A cubic spline of log P through 28 points per decade leaves less than 1e-5.
+        """
+        times = np.geomspace(0.3, 40.0, 60)
+        found = exact(0.6, times, 1).probability.values
+        seen = found > 0
+        spline = CubicSpline(np.log(times[seen]), np.log(found[seen]))
+        fine = np.geomspace(times[seen][0], times[-1], 20_001)
+        transform = simpson(2 * np.exp(-2 * fine + spline(np.log(fine))), x=fine)
+        expected = first_passage(ordinates(FRICTION, 13, 0.1), 2.0, -0.6, 0.6).real
+        assert transform == pytest.approx(expected, rel=1e-5)
+
+    @pytest.mark.parametrize(
+        ("scene", "given", "method"),
+        [
+            (FRICTION, {}, "spectral"),
+            (FRICTION, {"tol": 1e-5}, "spectral"),
+            (FRICTION, {"tol": 1e-2}, "monte_carlo"),  # 1 ms against a second
+            (FRICTION, {"paths": 10}, "monte_carlo"),
+            (FRICTION, {"order": 1}, "corrected"),
+            (ns.Scene("friction", "hamiltonian"), {"tol": 0.1}, "monte_carlo"),
+        ],
+    )
+    def test_method_follows_from_what_is_given(self, scene, given, method):
+        """And is told."""
+        assert ns.crossing_probability(scene, 0.6, [1.0], **given).attrs["method"] == method
+
+    def test_other_scenes_are_told_to_sample(self):
+        """The message names the method to use."""
+        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
+            exact(0.6, [1.0], 1, ns.Scene("friction", "hamiltonian"))

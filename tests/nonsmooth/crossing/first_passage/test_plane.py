@@ -1,0 +1,148 @@
+"""First passage for two state variables by doubling slabs."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.integrate import simpson
+
+import nonsmooth as ns
+from nonsmooth.crossing.first_passage import plane as plane
+from nonsmooth.crossing.first_passage.time_stepping import March
+from nonsmooth.errors import SceneError
+from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.kinetic import case_modes
+from nonsmooth.kinetic.adding_doubling import slab
+from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
+from nonsmooth.kinetic.ordinates_line import ordinates
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
+
+FRICTION = ns.Scene("friction", "langevin")
+PLASTIC = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
+OBSTACLE = ns.Scene("obstacle", potential="x**2/2", observable="x")
+SCENES = {"friction": (FRICTION, 0.3), "plastic": (PLASTIC, 0.3), "obstacle": (OBSTACLE, 0.8)}
+
+
+def grid_of(scene):
+    """Discretise a scene, coarsely."""
+    ends = boxed(scene)
+    if scene is OBSTACLE:
+        return gibbs_ordinates(scene, ends, 0)
+    return plane_ordinates(scene, ends, 0, 1.0)
+
+
+def of_one_variable(line):
+    """Write the grid of a scene with one variable as if it had two."""
+    moving = line.moving
+    order = np.append(moving, np.delete(np.arange(len(line.g)), moving))
+    generator, start = {}, {}
+    for parity in (ODD, EVEN):
+        kept = moving if parity == ODD else order  # odd functions are 0 at the origin
+        matrix = -line.stiffness[parity] / line.masses[:, None]
+        generator[parity] = sp.csc_array(matrix[np.ix_(kept, kept)])
+        start[parity] = line.start[parity][kept]
+    way = np.sqrt(line.masses @ line.g**2)
+    return PlaneOrdinates(line.g[moving], np.ones(len(order)), way, 0, generator, start)
+
+
+class TestSlab:
+    """Doubling against what is known of slabs."""
+
+    @pytest.mark.parametrize("z", [0.02, 0.5, 0.3 + 2.0j])
+    @pytest.mark.parametrize("levels", [(-2.0, 2.0), (-1.0, 2.0), (-np.inf, 1.0), (-1.0, np.inf)])
+    def test_agrees_with_the_modes_of_one_variable(self, z, levels):
+        """On the same grid, whose modes are exact; half as thin a slab shows the error.
+
+        Of an order of 0.6 at least, for speeds go down to 0: then it is twice the difference.
+        """
+        line = ordinates(ns.Scene("friction"), 6, 1.0)
+        exact = case_modes.first_passage(line, z, *levels)
+        grid = of_one_variable(line)
+        coarse, fine = (plane.first_passage(grid, z, *levels, resolution=r) for r in (1, 2))
+        assert abs(fine - exact) <= 2 * abs(fine - coarse) + 1e-9
+        assert abs(fine - exact) < plane.Plane.tol / 5
+
+    @pytest.mark.parametrize("name", SCENES)
+    def test_is_passive_and_conserves(self, name):
+        """Constants are lost at the rate z only: 1 - (R + S) 1 is of the order z."""
+        grid = grid_of(SCENES[name][0])
+        for z in (1e-6, 1e-8):
+            made = slab(grid, z, 1.0, 8)
+            ones = grid.ones[: len(grid.speeds)]
+            lost = ones - (made.reflection + made.transmission) @ ones
+            assert np.max(np.abs(lost)) < 1e3 * z + 1e-9
+
+    @pytest.mark.parametrize("name", SCENES)
+    def test_exits_surely(self, name):
+        """(1 - h) / z tends to the mean exit time, from below for it is convex."""
+        scene, level = SCENES[name]
+        grid = grid_of(scene)
+        mean = [
+            (1 - plane.first_passage(grid, z, -level, level, 1)) / z for z in (1e-2, 1e-4, 1e-6)
+        ]
+        assert 0 < mean[0] < mean[1] < mean[2]
+        assert mean[2] == pytest.approx(mean[1], rel=1e-4 * mean[2] + 1e-3)
+
+    def test_fast_noise_is_white(self):
+        """Ornstein-Uhlenbeck noise of the rate theta = sigma is white up to 1/theta.
+
+        The ratio 4 of the distances is met to a third, for the next order.
+        """
+        level, z = 0.6 * np.sqrt(10), 0.1
+        white = ordinates(ns.Scene("friction"), 9, 1.0)
+        exact = case_modes.first_passage(white, z, -level, level).real
+        gap = []
+        for theta in (10.0, 40.0):
+            scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(theta, theta))
+            grid = plane_ordinates(scene, boxed(scene), 1, 10.0)
+            gap.append(exact - plane.first_passage(grid, z, -level, level, 1))
+        assert gap[0] / gap[1] == pytest.approx(4, rel=1 / 3)
+
+    def test_one_wall_far_away_is_none(self):
+        """A wall that is not reached."""
+        grid, z = grid_of(PLASTIC), 1.0
+        far = plane.first_passage(grid, z, -40.0, 0.3, 0)
+        assert far == pytest.approx(plane.first_passage(grid, z, -np.inf, 0.3, 0), abs=1e-6)
+
+
+class TestCrossing:
+    """The inverted transform against what does not use it."""
+
+    @pytest.mark.parametrize(
+        ("name", "paths", "p"),
+        [
+            ("friction", 4000, 3),
+            ("plastic", 2000, 3),
+            ("obstacle", 20000, 3),
+            ("obstacle", 2000, 300),  # so long that it is not marched
+        ],
+    )
+    def test_agrees_with_monte_carlo(self, name, paths, p):
+        """Within 4.5 standard errors, false alarms 3e-5 in all, and the measured bias."""
+        scene, level = SCENES[name]
+        horizons = [2.0]
+        found = ns.crossing_probability(scene, level, horizons, p, method="spectral", tol=2e-3)
+        assert np.all(found.probability_error < 2e-3)
+        sample = ns.crossing_probability(scene, level, horizons, p, step=0.02, paths=paths, seed=7)
+        allowed = 4.5 * sample.probability_error + np.abs(sample.step_bias)
+        allowed += 4.5 * sample.step_bias_error + found.probability_error
+        assert np.all(np.abs(found.probability - sample.probability) < allowed)
+
+    @pytest.mark.parametrize(
+        ("name", "levels"), [("friction", (-0.3, 0.3)), ("obstacle", (-0.8, 1.2))]
+    )
+    def test_marching_agrees_with_the_transform(self, name, levels):
+        """Of the marched curve, integrated to exp(-10); each on a coarse grid, good to 5e-4."""
+        scene, z = SCENES[name][0], 0.5
+        marched = March(scene, *levels)
+        times = np.linspace(0.0, 20.0, 801)[1:]
+        found = marched.solve(times, *marched.levels[0])[0]
+        integral = z * simpson(np.append(0.0, np.exp(-z * times) * found), dx=times[0])
+        integral += np.exp(-z * times[-1]) * found[-1]
+        transform = plane.Plane(scene, *levels).transform(0, times, None)
+        assert integral == pytest.approx(transform(z), abs=1e-3)
+
+    def test_a_scene_of_four_variables_is_told_to_sample(self):
+        """The message names the method."""
+        scene = ns.Scene("elasto_plastic", "hamiltonian")
+        with pytest.raises(SceneError, match="monte_carlo"):
+            ns.crossing_probability(scene, 0.3, [1.0], 30, method="spectral")

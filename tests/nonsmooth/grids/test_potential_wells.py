@@ -1,0 +1,105 @@
+"""Scenes that mix slowly: right as long as they are solved at all, and refused beyond."""
+
+import importlib
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_simpson, simpson
+
+import nonsmooth as ns
+from nonsmooth.errors import ToleranceError
+from nonsmooth.grids import potential_wells
+from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.models import eta
+from nonsmooth.statistics import gamma2_on_grids
+
+
+def langevin_growth(noise):
+    """gamma^2 of g = eta under a noise of type 1, sigma^2 int u'^2 m by Simpson's rule.
+
+    Returns
+    -------
+    value, error : float
+        The error is the difference to a grid twice as coarse; the rule is of fourth order.
+    """
+    v = vectorised(noise.potential_expression, (eta,))
+    rate = 2 / noise.sigma**2
+    end = 1.0
+    while rate * (min(v(end), v(-end)) - np.min(v(np.linspace(-end, end, 2001)))) < 60:
+        end *= 1.1
+
+    def integral(points):
+        place = np.linspace(-end, end, points)
+        depth = rate * v(place)
+        mass = np.exp(depth.min() - depth)
+        mass /= simpson(mass, x=place)
+        source = (place - simpson(place * mass, x=place)) * mass
+        left = cumulative_simpson(source, x=place, initial=0)
+        flux = np.where(place < 0, left, left - left[-1])
+        return noise.sigma**2 * simpson((rate * flux) ** 2 / mass, x=place)
+
+    value = integral(80_001)
+    return value, abs(value - integral(40_001))
+
+
+@pytest.mark.parametrize("barrier", [0.5, 2.0, 8.0])
+def test_the_forcing_may_mix_slowly(barrier):
+    """Friction under eta in two wells: gamma^2 of all that resists is the forcing's own.
+
+    With 8 kT it is 2e4; kT = 1/2.
+    """
+    depth = np.sqrt(2 * barrier)
+    noise = ns.Langevin(f"eta**4/4 - {depth}*eta**2/2")
+    scene = ns.Scene("friction", noise, n=20, observable="y + max(min(20*y, 1), -1)")
+    found = ns.asymptotic_variance(scene, tol=1e-4)
+    value, error = langevin_growth(noise)
+    assert abs(found.value - value) <= found.error + error
+    assert found.error <= 1e-4 * found.value
+
+
+def test_rate_of_jumps_between_two_wells():
+    """gamma^2 of the displacement is Kramers', which neglects terms of the order kT / barrier."""
+    barrier, damping, temperature = 4.0, 3.0, 0.5
+    noise = ns.White(np.sqrt(2 * damping * temperature))
+    potential = f"{barrier}*(x**2 - 1)**2"
+    # an obstacle too soft to be felt
+    scene = ns.Scene("obstacle", noise, 1e-9, damping, potential, "x")
+    found = ns.asymptotic_variance(scene, tol=1e-3)
+    well, top = np.sqrt(8 * barrier), np.sqrt(4 * barrier)
+    escape = (np.hypot(damping / 2, top) - damping / 2) / top * well / (2 * np.pi)
+    escape *= np.exp(-barrier / temperature)
+    # the sign of x flips at twice the rate of escape: gamma^2 = 2 / (2 escape)
+    assert found.value == pytest.approx(1 / escape, rel=temperature / barrier)
+
+
+def test_a_rate_that_is_out_of_reach_is_refused(monkeypatch):
+    """Thirty kT: one transition in 1e12; the message tells so."""
+    monkeypatch.setattr(gamma2_on_grids, "LARGEST", {2: 10_000})
+    scene = ns.Scene("obstacle", potential="x**2/2 + 15*exp(-4*x**2)", observable="x")
+    with pytest.raises(ToleranceError, match=r"mixes slowly, g stays correlated for some \de\+"):
+        ns.asymptotic_variance(scene, tol=1e-3)
+
+
+def test_paths_that_never_leave_their_well_are_refused(monkeypatch):
+    """From x = -1 the variance within one well settles, and at 16 kT all stay there."""
+    monkeypatch.setattr(importlib.import_module("nonsmooth.statistics.variance"), "_DOUBLINGS", 2)
+    scene = ns.Scene(
+        "obstacle", potential="x**2/2 + 8*exp(-4*x**2)", observable="x", start={"x": -1.0}
+    )
+    with pytest.raises(ToleranceError, match=r"2 wells .* mixes slowly"):
+        ns.asymptotic_variance(scene, tol=0.1, method="monte_carlo")
+
+
+def test_wells_and_what_is_none():
+    """One start in each; a ripple below 2 kT and a slope in one direction make none."""
+    double = ns.Langevin("eta**4/4 - 2*eta**2")
+    assert potential_wells.starts(ns.Scene("friction")) == [{}]
+    found = potential_wells.starts(ns.Scene("friction", double, potential="x**2/2", observable="x"))
+    assert [point["eta"] for point in found] == pytest.approx([-2, 2], abs=0.01)
+    assert [point["x"] for point in found] == pytest.approx([0, 0], abs=0.01)
+    rippled = ns.Scene("obstacle", potential="x**2/2 + 0.05*cos(3*x)", observable="x")
+    assert len(potential_wells.starts(rippled)) == 1
+    pressed = ns.Scene("obstacle", n=np.inf, potential="x**2/2 - 2*x", observable="x")
+    assert potential_wells.starts(pressed) == [{"x": 1.0}]
+    between = ns.Scene("obstacle", n=np.inf, potential="x**2/2 + 8*exp(-x**2)", observable="x")
+    assert potential_wells.starts(between) == [{"x": -1.0}, {"x": 1.0}]

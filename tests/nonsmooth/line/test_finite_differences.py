@@ -1,0 +1,90 @@
+"""The paper's scheme: first order in time, second in space, honest about its error."""
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import SceneError
+from nonsmooth.line import eigenfunctions, finite_differences
+
+SCENE = ns.Scene("friction", n=10)  # the kinks at +-0.1 are nodes of all meshes below
+TAU = [0.4, 5.0]
+HALF_WIDTH = 6.0
+
+
+@pytest.fixture(scope="module")
+def reference():
+    """V by spectral elements, error below 1e-9."""
+    return ns.variance(SCENE, TAU)["v"].values
+
+
+def test_other_starting_points():
+    """A node by the spectral elements within the error bound; between nodes it is refused."""
+    scene = ns.Scene("friction", n=5, start={"y": 1.0})
+    w, v, w_error, v_error = finite_differences.moments_with_error(scene, [2.0], 6.0, 601, 0.01)
+    exact = eigenfunctions.moments(scene, [2.0], 12)
+    assert abs(w - exact[0]) < w_error < 1e-2
+    assert abs(v - exact[1]) < v_error < 1e-2
+    with pytest.raises(SceneError, match="starts from a node"):
+        finite_differences.moments(ns.Scene("friction", start={"y": 0.511}), [1.0], 6.0, 601, 0.1)
+
+
+def test_first_order_in_time(reference):
+    """Halving Delta t halves the error on a mesh whose own error is negligible."""
+    space = finite_differences.moments(SCENE, TAU, HALF_WIDTH, 4801, 1e-3)[1] - reference
+    error = [
+        finite_differences.moments(SCENE, TAU, HALF_WIDTH, 4801, dt)[1] - reference
+        for dt in (0.05, 0.025)
+    ]
+    rate = np.log2(np.abs(error[0]) / np.abs(error[1]))
+    assert np.all(np.abs(rate - 1) < 0.1)
+    assert np.all(np.abs(error[1]) < 0.025)  # the constant is of order one
+    assert np.all(np.abs(space) < 1e-3)
+
+
+def test_second_order_in_space(reference):
+    """Halving Delta y quarters what it contributes, kinks on nodes; Delta t is held fixed."""
+    v = [
+        finite_differences.moments(SCENE, TAU, HALF_WIDTH, nodes, 0.01)[1]
+        for nodes in (241, 481, 961)
+    ]
+    rate = np.log2(np.abs(v[0] - v[1]) / np.abs(v[1] - v[2]))
+    assert np.all(np.abs(rate - 2) < 0.25)
+
+
+@pytest.mark.parametrize("n", [2, 37.0, 100, 1000])
+@pytest.mark.parametrize(("nodes", "time_step"), [(401, 0.02), (1201, 0.005)])
+def test_stated_error_covers_the_true_one(n, nodes, time_step):
+    """Also where 1/n falls between two nodes."""
+    scene = ns.Scene("friction", n=n)
+    exact = ns.variance(scene, TAU)
+    w, v, w_error, v_error = finite_differences.moments_with_error(
+        scene, TAU, HALF_WIDTH, nodes, time_step
+    )
+    assert np.all(np.abs(v - exact["v"]) <= v_error)
+    assert np.all(np.abs(w - exact["w"]) <= w_error + 1e-12)
+
+
+def test_intensity_of_the_noise_enters_squared(reference):
+    """Sigma = 2: against spectral elements, within the stated error."""
+    scene = ns.Scene("friction", noise=ns.White(2.0), n=10)
+    exact = ns.variance(scene, TAU)["v"].values
+    _, v, _, error = finite_differences.moments_with_error(scene, TAU, 9.0, 1801, 0.01)
+    assert np.all(np.abs(v - exact) <= error)
+    assert np.all(exact > 3.9 * reference)  # friction holds back a stronger noise less
+
+
+@pytest.mark.parametrize(
+    ("arguments", "cure"),
+    [
+        ({"nodes": 400}, "add one"),
+        ({"time_step": 0.03}, "multiples"),
+        ({"scene": ns.Scene("friction", n=float("inf"))}, "finite n"),
+        ({"scene": ns.Scene("obstacle")}, "state"),
+    ],
+)
+def test_bad_grids_are_refused(arguments, cure):
+    """One line with the cure."""
+    defaults = {"scene": SCENE, "nodes": 401, "time_step": 0.01}
+    with pytest.raises(SceneError, match=cure):
+        finite_differences.moments(times=[1.0], half_width=6.0, **(defaults | arguments))

@@ -1,0 +1,68 @@
+"""The elementary functions are accurate where the flows use them."""
+
+import numba
+import numpy as np
+import pytest
+
+from nonsmooth.paths.kernels import vector_math as e
+
+CASES = {
+    # in units in the last place of the result, or of 1 where that is what the flows need
+    "decay": (e.decay, lambda x: np.exp(-x), np.linspace(0, 90, 400_001), 1.0, 1.0),
+    "expm1": (e.expm1, np.expm1, -np.geomspace(1e-12, 90, 400_001), None, 2.0),
+    "log": (e.log, np.log, np.geomspace(2.0**-32, 1 - 2.0**-24, 400_001), None, 1.5),
+    "log1p": (e.log1p, np.log1p, np.geomspace(1e-12, 1e12, 400_001), None, 2.0),
+    "sine": (lambda x: e.sincos(x)[0], np.sin, np.linspace(-9, 9, 400_001), 1.0, 2.0),
+    "cosine": (lambda x: e.sincos(x)[1], np.cos, np.linspace(-9, 9, 400_001), 1.0, 2.0),
+}
+
+
+@pytest.mark.parametrize("precision", ["float32", "float64"])
+@pytest.mark.parametrize("name", CASES)
+def test_accuracy(name, precision):
+    """Against numpy in double precision."""
+    function, exact, x, unit, allowed = CASES[name]
+    jitted = numba.njit(function) if name in ("sine", "cosine") else function
+
+    @numba.njit
+    def sweep(x, out):
+        for i in range(len(x)):
+            out[i] = jitted(x[i])
+
+    x = x.astype(precision)
+    out = np.empty_like(x)
+    sweep(x, out)
+    reference = exact(x.astype(np.longdouble))
+    scale = np.spacing(np.asarray(np.abs(reference) if unit is None else unit, dtype=precision))
+    assert np.max(np.abs(out - reference) / scale) <= allowed
+
+
+@pytest.mark.parametrize("precision", ["float32", "float64"])
+def test_angle(precision):
+    """Arctan2 in the upper half plane, axes and origin included."""
+    rng = np.random.default_rng(1)
+    y, x = np.abs(rng.normal(size=10_000)), rng.normal(size=10_000)
+    y[:100], x[100:200], x[200:300] = 0, 0, 1e-6
+    y, x = y.astype(precision), x.astype(precision)
+
+    @numba.njit
+    def sweep(y, x, out):
+        for i in range(len(x)):
+            out[i] = e.arctan2(y[i], x[i])
+
+    out = np.empty_like(x)
+    sweep(y, x, out)
+    exact = np.arctan2(y.astype(float), x.astype(float))
+    assert np.max(np.abs(out - exact)) < 2 * np.spacing(np.dtype(precision).type(np.pi))
+
+
+def test_extrema_and_choice():
+    """They compute both sides and choose."""
+
+    @numba.njit
+    def choose(x, y):
+        return e.maximum(x, y), e.minimum(x, y), e.where(x > y, x, y), e.fma(x, y, y)
+
+    assert choose(2.0, -3.0) == (2.0, -3.0, 2.0, -9.0)
+    with pytest.raises(TypeError, match="numpy"):
+        e.log(1.0)

@@ -1,0 +1,161 @@
+"""gamma^2 on tensor grids against what is known exactly, and each part of the discretisation."""
+
+import numpy as np
+import pytest
+import scipy.linalg
+import sympy
+from scipy.integrate import quad
+
+import nonsmooth as ns
+from nonsmooth.errors import ToleranceError
+from nonsmooth.grids import elements, generator, mesh, tensor_grid
+from nonsmooth.scenes.models import STATE_VARIABLES, x, y
+
+
+def linear_reference(scene, square):
+    """gamma^2 of g = x or g = x^2 of a linear scene, from its covariance.
+
+    The penalty of the scenes below is too weak to matter: its force is n (|x| - 1).
+    """
+    symbols = [s for s in STATE_VARIABLES if s.name in scene.state]
+    linear = {s: scene.noise.drift.get(s) for s in symbols if s in scene.noise.drift}
+    linear |= {
+        y: scene.noise.forcing - sympy.diff(scene.potential_expression, x) - scene.damping * y,
+        x: y,
+    }
+    drift = np.array(sympy.Matrix([linear[s] for s in symbols]).jacobian(symbols), dtype=float)
+    kick = np.diag([scene.noise.sigma * (s == scene.noise.driven) for s in symbols])
+    covariance = scipy.linalg.solve_continuous_lyapunov(drift, -kick @ kick)
+    place = symbols.index(x)
+    if not square:
+        return -2 * np.linalg.solve(drift, covariance)[place, place]
+    slowest = -np.linalg.eigvals(drift).real.max()
+
+    def squared(t):
+        return (scipy.linalg.expm(t * drift) @ covariance)[place, place] ** 2
+
+    return 4 * quad(squared, 0, 20 / slowest, epsrel=1e-10, limit=400)[0]
+
+
+def random_linear(generator_, noise):
+    """Draw a linear scene: an obstacle too soft to be felt."""
+    draw = generator_.uniform
+    noises = {
+        "white": ns.White(sigma=draw(0.5, 2)),
+        "langevin": ns.OrnsteinUhlenbeck(draw(0.5, 2), draw(0.5, 2)),
+        "hamiltonian": ns.KanaiTajimi(draw(0.5, 2), draw(0.5, 2), draw(0.5, 2)),
+    }
+    return {
+        "model": "obstacle",
+        "noise": noises[noise],
+        "n": 1e-9,
+        "damping": draw(0.3, 3),
+        "potential": f"{draw(0.5, 2):.3f}*x**2/2",
+    }
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("square", [False, True])
+def test_two_variables_linear(seed, square):
+    """The stated error is larger than the true one and smaller than the tolerance."""
+    parameters = random_linear(np.random.default_rng(seed), "white")
+    scene = ns.Scene(**parameters, observable="x**2" if square else "x")
+    found = ns.asymptotic_variance(scene, tol=1e-5)
+    assert abs(found.value - linear_reference(scene, square)) <= found.error
+    assert found.error <= 1e-5 * found.value
+
+
+@pytest.mark.parametrize("square", [False, True])
+def test_three_variables_linear(square):
+    """The iteration and the alternating directions, with and without the mirror symmetry."""
+    parameters = random_linear(np.random.default_rng(3), "langevin")
+    scene = ns.Scene(**parameters, observable="x**2" if square else "x")
+    found = ns.asymptotic_variance(scene, tol=2e-2, method="deterministic")
+    assert abs(found.value - linear_reference(scene, square)) <= found.error
+
+
+def test_forcing_balance_of_the_elasto_plastic_model():
+    """gamma^2[U' + C_b y] is the white forcing's spectrum at 0 (METHODS, exact identity)."""
+    scene = ns.Scene("elasto_plastic", n=50, potential="x**2/2", observable="x + y")
+    found = ns.asymptotic_variance(scene, tol=1e-5)
+    assert abs(found.value - 1) <= found.error
+
+
+def test_forcing_balance_of_friction():
+    """gamma^2[C_b y + a_n'] = 1 / theta^2 under the Ornstein-Uhlenbeck forcing."""
+    scene = ns.Scene(
+        "friction", ns.OrnsteinUhlenbeck(2.0), n=20, observable="y + max(min(20*y, 1), -1)"
+    )
+    found = ns.asymptotic_variance(scene, tol=1e-5)
+    assert abs(found.value - 0.25) <= found.error
+
+
+def test_plastic_strain_has_the_growth_rate_of_the_displacement():
+    """Int (y - g) = X(T) - X(0) is bounded; the two observables share no term."""
+    a, b = (
+        ns.asymptotic_variance(
+            ns.Scene("elasto_plastic", n=100, potential="x**2/2", observable=g), tol=1e-5
+        )
+        for g in ("y", "plastic_strain_rate")
+    )
+    assert abs(a.value - b.value) <= a.error + b.error
+
+
+def test_published_value_of_the_obstacle():
+    """0.441883416, checked by two codes (METHODS section 4)."""
+    scene = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
+    found = ns.asymptotic_variance(scene)
+    assert abs(found.value - 0.441883416) <= found.error + 5e-10
+
+
+def test_non_smooth_limit_of_the_elasto_plastic_model():
+    """gamma_n^2 = gamma_inf^2 + c / n + O(n^-2): three finite n agree with n = inf."""
+    scene = ns.Scene("elasto_plastic", potential="x**2/2")
+    finite = [ns.asymptotic_variance(scene.with_n(n), tol=1e-5) for n in (1e3, 1e4)]
+    limit = ns.asymptotic_variance(scene.with_n(np.inf), tol=1e-5)
+    extrapolated = finite[1].value + (finite[1].value - finite[0].value) / 9
+    # the neglected term is (c / n)^2 ~ (0.06 / 1e3)^2 / gamma^2 relative
+    allowed = limit.error + 1.2 * finite[1].error + 0.2 * finite[0].error + 1e-6 * limit.value
+    assert abs(limit.value - extrapolated) <= allowed
+
+
+def test_a_bounded_integral_is_refused():
+    """G = y between walls: gamma^2 = 0 cannot have a relative error."""
+    with pytest.raises(ToleranceError, match="error of"):
+        ns.asymptotic_variance(ns.Scene("obstacle", potential="x**2/2"), tol=1e-3)
+
+
+def test_the_generator_is_exact_on_polynomials():
+    """A_n f of a quadratic f at the nodes, computed symbolically; linear drift between kinks."""
+    scene = ns.Scene("elasto_plastic", n=10, potential="x**2/2")
+    axes = mesh.axes(scene, {y: 3.0, x: 1.5}, {y: 1, x: 1})
+    matrix = generator.assemble(scene, axes)
+    f = x**2 + x * y + y**2
+    drift = scene.numerical_drift()
+    exact = sum(drift[s] * sympy.diff(f, s) for s in (y, x)) + sympy.diff(f, y, 2) / 2
+    found = matrix @ generator.evaluate(f, axes)
+    wanted = generator.evaluate(exact, axes)
+    # the weak second derivative has zero slope at the ends: compare within
+    inside = generator.evaluate(sympy.Abs(y), axes) < 2.9
+    scale = np.abs(wanted).max()
+    edges = np.isin(generator.evaluate(y, axes), axes[y].edges)
+    assert np.max(np.abs(found - wanted)[inside & ~edges]) < 1e-10 * scale
+    assert np.max(np.abs(matrix @ np.ones(matrix.shape[0]))) < 1e-9
+
+
+@pytest.mark.parametrize("make", [elements.continuous, elements.discontinuous])
+def test_interpolation_is_exact_on_polynomials(make):
+    """A cubic on elements of degree 3, at points within, on edges and outside."""
+    axis = make(np.array([-1.0, 0.3, 2.0]), 3)
+    points = np.array([-1.0, -0.4, 0.3, 1.9, 2.0])
+    cubic = axis.nodes**3 - axis.nodes
+    assert axis.interpolation(points) @ cubic == pytest.approx(points**3 - points, abs=1e-13)
+    assert axis.interpolation([2.5]) @ cubic == 0
+    assert axis.weights @ cubic == pytest.approx((2.0**4 - 1) / 4 - (2.0**2 - 1) / 2)
+
+
+def test_the_box_holds_the_invariant_density():
+    """The velocity of an obstacle scene is normal with variance sigma^2 / (2 C_b)."""
+    scene = ns.Scene("obstacle", ns.White(2.0), n=100, damping=0.5, potential="x**2/2")
+    grid = tensor_grid.fitted(scene, 20.0, 2)
+    assert grid.ends[y] == pytest.approx(2.0 * np.sqrt(40.0), rel=0.15)

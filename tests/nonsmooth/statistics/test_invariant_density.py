@@ -1,0 +1,86 @@
+"""Invariant densities: closed forms against grids, averages over bins against simulations."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import nonsmooth as ns
+from nonsmooth.errors import SceneError
+from nonsmooth.grids import tensor_grid
+from nonsmooth.paths.ensembles import paths_at
+from nonsmooth.statistics import invariant_density as density
+from nonsmooth.statistics.invariant_density import bin_averages, closed_form, invariant_density
+
+OBSTACLE = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
+PLASTIC = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
+FALSE_ALARM = 1e-5
+
+
+def test_gibbs_density_is_the_grids():
+    """Within the difference of two grids and 1e-3 of the maximum."""
+    grid = tensor_grid.fitted(OBSTACLE, math.log(1e3) + tensor_grid.SPARE, 1)
+    points = {"y": np.linspace(-3, 3, 61), "x": np.linspace(-1.2, 1.2, 61)}
+    coarse, fine = (
+        density._on(OBSTACLE, tensor_grid.raised(grid, by), ["y", "x"], points, None)
+        for by in (2, 3)
+    )
+    for name, exact in closed_form(OBSTACLE).items():
+        value, error = exact(points[name])
+        difference = np.max(np.abs(fine[name,] - coarse[name,]))
+        assert difference < 1e-3 * value.max()
+        assert np.max(np.abs(fine[name,] - value)) < difference + 1e-4 * value.max()
+        assert np.max(error) < 1e-8 * value.max()
+
+
+@pytest.mark.parametrize("scene", [OBSTACLE, ns.Scene("friction", n=100)])
+def test_closed_forms_have_mass_one_and_are_even(scene):
+    """By averages over bins that hold all but 1e-12 of the mass."""
+    edges = {name: np.linspace(-8, 8, 161) for name in scene.state}
+    edges |= {"x": np.linspace(-3, 3, 61)} if "x" in scene.state else {}
+    for name, (value, error) in bin_averages(scene, edges, 1e-8).items():
+        assert value @ np.diff(edges[name]) == pytest.approx(1, abs=1e-8)
+        assert value == pytest.approx(value[::-1], abs=1e-10)
+        assert np.all(error < 1e-8 * value.max())
+
+
+@pytest.mark.parametrize("scene", [OBSTACLE, ns.Scene("friction", n=100)])
+def test_closed_forms_are_the_public_densities(scene):
+    """With their errors, at any tolerance."""
+    found = invariant_density(scene)
+    for name in scene.state:
+        assert float(found[f"density_{name}_error"]) < 1e-8
+        assert np.allclose(
+            found[f"density_{name}"], closed_form(scene)[name](found[name].values)[0]
+        )
+
+
+def test_averages_agree_with_a_simulation():
+    """Elasto-plastic: chi-square of both variables; each rejects by chance with 1e-5."""
+    paths = 4000
+    y, x, _ = paths_at(PLASTIC, [20], 0.01, paths, 3, threads=1)[-1]
+    edges = {"y": np.linspace(-1.6, 1.6, 17), "x": np.linspace(-1.05, 1.05, 15)}
+    solved = bin_averages(PLASTIC, edges, 3e-3)
+    for name, sample in (("y", y), ("x", x)):
+        share = solved[name][0] * np.diff(edges[name])
+        expected = paths * np.append(share, 1 - share.sum())
+        inside = np.histogram(sample, edges[name])[0]
+        counts = np.append(inside, paths - inside.sum())
+        use = expected > 5
+        statistic = np.sum((counts - expected)[use] ** 2 / expected[use])
+        assert statistic < stats.chi2.isf(FALSE_ALARM, np.sum(use))
+
+
+def test_error_holds_a_finer_solution():
+    """The error at a loose tolerance covers the difference to a tight one."""
+    edges = {"y": np.linspace(-2, 2, 21)}
+    loose, error = bin_averages(PLASTIC, edges, 1e-2)["y"]
+    tight, _ = bin_averages(PLASTIC, edges, 1e-5)["y"]
+    assert np.max(np.abs(loose - tight)) < np.max(error)
+
+
+def test_the_nonsmooth_limit_is_refused():
+    """It has no density."""
+    with pytest.raises(SceneError, match="finite n"):
+        bin_averages(PLASTIC.with_n(math.inf), {"y": [-1, 1]}, 1e-2)

@@ -1,0 +1,58 @@
+"""The spectral gap against linear systems and the decay of correlations."""
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import SceneError
+from nonsmooth.paths.ensembles import paths_at
+
+
+def linear(damping, stiffness):
+    """Make a linear scene, an obstacle too soft to be felt."""
+    potential = f"{stiffness}*x**2/2"
+    return ns.Scene("obstacle", n=1e-14, damping=damping, potential=potential, observable="x")
+
+
+@pytest.mark.parametrize(
+    ("damping", "stiffness"), [(1.0, 1.0), (3.0, 1.0), (0.6, 2.0), (2.0, 1.0), (2.000001, 1.0)]
+)
+def test_linear_oscillator(damping, stiffness):
+    """The slowest eigenvalue is that of the drift, exact for polynomials; rounding, if double."""
+    exact = -np.linalg.eigvals([[-damping, -stiffness], [1.0, 0.0]]).real.max()
+    tol = 1e-5 if damping == pytest.approx(2.0) else 1e-9
+    found = ns.spectral_gap(linear(damping, stiffness), tol)
+    assert abs(found.value - exact) <= found.error <= tol * found.value
+
+
+def test_friction_waits_for_the_noise():
+    """The forcing's own rate theta, where friction forgets faster than it."""
+    found = ns.spectral_gap(ns.Scene("friction", ns.OrnsteinUhlenbeck(0.3), n=3), tol=1e-4)
+    assert abs(found.value - 0.3) <= found.error
+
+
+def test_dry_friction_in_the_limit():
+    """lambda_1 = 2.53719 for n = inf (METHODS section 1)."""
+    found = ns.spectral_gap(ns.Scene("friction", n=np.inf))
+    assert found.value == pytest.approx(2.53719, abs=1e-5)
+
+
+def test_correlations_decay_at_the_gap():
+    """The mean of the state forgets where it started at least as fast as the gap says."""
+    scene = ns.Scene(
+        "elasto_plastic", n=20, potential="x**2/2", observable="y", start={"y": 1.5, "x": 0.5}
+    )
+    gap = ns.spectral_gap(scene, tol=1e-4).value
+    times = np.array([2.0, 3.0, 4.0, 5.0])
+    sample = paths_at(scene, times, 0.01, 200_000, 1)[1:, :2]  # y and x
+    size = np.abs(sample.mean(axis=2)).sum(axis=1)
+    noise = 5 * np.sqrt(2 / 200_000)
+    # the slowest mode bounds the decay: |E z_t| <= c e^(-gap t), c from the first time; the
+    # factor e allows for a phase of the complex pair that is small at the first time
+    assert np.all(size <= np.e * (size[0] + noise) * np.exp(-gap * (times - times[0])) + noise)
+
+
+def test_more_variables_are_refused():
+    """One line that says what to do."""
+    with pytest.raises(SceneError, match="Monte Carlo"):
+        ns.spectral_gap(ns.Scene("elasto_plastic", "langevin", potential="x**2/2"))

@@ -1,0 +1,86 @@
+"""Every entry of the errata: what is printed is wrong, what is mended is right."""
+
+import re
+
+import pytest
+import yaml
+from conftest import ROOT
+
+from nonsmooth.line.dry_friction import friction_variance
+from reproduction.errata import ERRATA, Evidence
+
+LABELS = [erratum.label for erratum in ERRATA]
+
+
+@pytest.fixture(scope="module")
+def evidence():
+    """All values, each computed once."""
+    return {erratum.label: erratum.evaluate() for erratum in ERRATA}
+
+
+@pytest.mark.parametrize("label", LABELS)
+def test_printed_is_wrong_and_mended_is_right(evidence, label):
+    """By the relation and the error that the entry states."""
+    e = evidence[label]
+    assert not e.holds(e.printed)
+    assert e.holds(e.mended)
+    if e.relation == "equal":
+        # the printed value is off by more than any doubt about the error
+        most = 1.1 if label in {"5b", "5c"} else 50
+        assert abs(e.printed - e.reference) > most * e.error
+
+
+def test_every_entry_is_there():
+    """Fourteen, in order, none twice."""
+    numbers = [int(re.match(r"\d+", label)[0]) for label in LABELS]
+    assert numbers == sorted(numbers)
+    assert set(numbers) == set(range(1, 15))
+    assert len(set(LABELS)) == len(LABELS)
+
+
+def test_texts_are_balanced(evidence):
+    """Mathematics between dollar signs, braces closed."""
+    for erratum in ERRATA:
+        quantity = evidence[erratum.label].quantity
+        for text in (erratum.place, erratum.wrong, erratum.right, quantity):
+            assert text.count("$") % 2 == 0
+            assert text.count("{") == text.count("}")
+
+
+@pytest.mark.parametrize(
+    ("relation", "right", "wrong"),
+    [("equal", (0.9, 1.1), (0.8, 1.2)), ("bound", (0.9, 5), (0.8,)), ("below", (-5, 1.1), (1.2,))],
+)
+def test_relations(relation, right, wrong):
+    """Equal, an upper bound, a lower bound, each within the error."""
+    e = Evidence("", 0, 0, reference=1.0, error=0.11, relation=relation)
+    assert all(map(e.holds, right))
+    assert not any(map(e.holds, wrong))
+
+
+def test_known_values(evidence):
+    """Against numbers derived by hand."""
+    assert evidence["1"].reference == pytest.approx(1 / 1.4, rel=1e-15)  # 1/(2 C_b)
+    assert evidence["2"].reference == pytest.approx(0.25, rel=1e-13)  # sigma^2/(2 theta)
+    # sigma^2/(2 k gamma_0), k = 2, gamma_0 = 0.6, sigma = 2
+    assert evidence["3c"].reference == pytest.approx(4 / 2.4, rel=1e-13)
+    assert evidence["3b"].reference == pytest.approx(4 / 0.72, rel=1e-13)  # k^2/(gamma_0^2 k)
+    assert evidence["4"].reference == pytest.approx(friction_variance(100)[0], rel=1e-10)
+    assert evidence["14b"].reference == 1
+
+
+def test_printed_numbers_are_the_papers(evidence):
+    """Those that paper/printed.yaml has too."""
+    printed = yaml.safe_load((ROOT / "paper" / "printed.yaml").read_text(encoding="utf-8"))
+    table = printed["tab:convergence-vng-n"]
+    assert evidence["4"].printed == printed["fig:fpn-cmp-PDE-MC"]["asymptotic_value"]
+    assert [evidence[label].printed for label in ("5a", "5b", "5c")] == [
+        table[n] for n in (100, 2, 50)
+    ]
+
+
+def test_only_one_entry_of_table_4_is_truncated(evidence):
+    """The one of n = 2; n = 50 is neither rounded nor truncated."""
+    truncated = {k: int(evidence[k].reference * 1e6) / 1e6 for k in ("5b", "5c")}
+    assert evidence["5b"].printed == truncated["5b"]
+    assert evidence["5c"].printed < truncated["5c"]
