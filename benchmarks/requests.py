@@ -156,13 +156,13 @@ def random_scene(rng, finite=False, variables=(1, 2, 3, 4), odd=False):
         if rigid and g in ("contact_force", "plastic_strain_rate"):
             continue
         scene = ns.Scene(model, pick(rng, COLOURS[noise]), n, log_uniform(rng, 0.5, 2), U, g)
-        if len(scene.state) in variables and (scene.is_odd() or not odd):
+        if scene.dimension in variables and (scene.is_odd() or not odd):
             return scene
 
 
 def tolerance(rng, scene, ranges):
     """Draw a tolerance from the range of the scene's number of variables."""
-    return log_uniform(rng, *ranges[len(scene.state)])
+    return log_uniform(rng, *ranges[scene.dimension])
 
 
 def some_growth(rng):
@@ -180,7 +180,7 @@ def some_variance(rng):
     ranges = {1: (1e-9, 1e-2), 2: (1e-5, 1e-2), 3: (1e-2, 5e-2), 4: (1e-2, 5e-2)}
     size = gamma_scale(scene)
     tol = tolerance(rng, scene, ranges) * size
-    if math.isinf(scene.n) and len(scene.state) == 2:
+    if math.isinf(scene.n) and scene.dimension == 2:
         tol = max(tol, 3e-2 * size)
     return Request("variance", scene, tol, {"times": times})
 
@@ -194,7 +194,7 @@ def some_crossing(rng):
     first = log_uniform(rng, 0.5, 4)
     horizons = np.round(first * np.geomspace(1, log_uniform(rng, 1.2, 10), rng.integers(1, 5)), 3)
     p = pick(rng, (1.0, 1.0, 10.0, 100.0))
-    loosest = {1: (1e-7, 3e-2)}.get(len(scene.state), (3e-3, 3e-2))
+    loosest = {1: (1e-7, 3e-2)}.get(scene.dimension, (3e-3, 3e-2))
     tol = log_uniform(rng, *loosest)
     given = {"threshold": threshold, "horizons": horizons, "p": p}
     return Request("crossing", scene, tol, given)
@@ -324,7 +324,7 @@ def one_degree(solve):
     """Solve with a single polynomial degree, where the state is y and the noise white."""
 
     def runs(request):
-        if eigenfunctions.applies(request.scene):
+        if request.scene.is_line:
             for degree in (4, 6, 8, 12, 16, 20):
                 yield lambda seed, degree=degree: (solve(request, degree), "one degree")
 
@@ -340,7 +340,7 @@ def one_grid(solve, levels=(0, 1, 2, 3, 4, 5), most=4):
         return solve(request, replace(grid, levels=dict.fromkeys(grid.levels, level)))
 
     def runs(request):
-        if 1 < len(request.scene.state) <= most and "y" in request.scene.state:
+        if 1 < request.scene.dimension <= most and "y" in request.scene.state:
             for level in levels if math.isfinite(request.scene.n) else ():
                 yield lambda seed, level=level: (on(request, level), "one grid")
 
@@ -411,7 +411,7 @@ def asymptotic(request):
         found = ns.crossing_probability(request.scene, **request.given, method="asymptotic")
         return found["probability"].values, "asymptotic"
 
-    if len(request.scene.state) < 3:
+    if request.scene.dimension < 3:
         yield run
 
 
@@ -419,7 +419,7 @@ def by_correction(order):
     """Take a corrected formula, where the state is y and the noise white."""
 
     def runs(request):
-        if eigenfunctions.applies(request.scene):
+        if request.scene.is_line:
             yield lambda seed: request.ask(method="corrected", order=order)
 
     return runs
@@ -477,7 +477,7 @@ def sampled(request):
 def true_growth(request):
     """Take another method for one and three variables."""
     scene = request.scene
-    many = len(scene.state)
+    many = scene.dimension
     if many == 1:
         return eigenfunctions.asymptotic_variance(request.scene, 24), 0.0
     if many == 2:
@@ -496,16 +496,16 @@ def true_growth(request):
 def true_variance(request):
     """Resolve more, by the same method or by Monte Carlo."""
     scene = request.scene
-    if len(scene.state) == 1:
+    if scene.dimension == 1:
         return moments_on_degree(request, 28), 0.0
-    if len(scene.state) == 2 and math.isfinite(scene.n):
+    if scene.dimension == 2 and math.isfinite(scene.n):
         return more_resolved(request)
     return sampled(request)
 
 
 def true_crossing(request):
     """Take the spectral method, where there is one."""
-    if eigenfunctions.applies(request.scene):
+    if request.scene.is_line:
         finest = request.tol / min(request.tol / FINER, 1e-6)
         try:
             return more_resolved(request, (finest, FINER, RESOLVED), method="spectral")
@@ -521,7 +521,7 @@ def true_density(request):
 
 def true_gap(request):
     """Resolve more."""
-    if eigenfunctions.applies(request.scene):
+    if request.scene.is_line:
         return gap_on_degree(request, 28), 0.0
     return more_resolved(request)
 
@@ -762,7 +762,7 @@ def main(arguments):
         lines.writerow(COLUMNS)
         for number, request in enumerate(requests):
             rows = measure(request)
-            own = [number, request.quantity, len(request.scene.state), request.scene]
+            own = [number, request.quantity, request.scene.dimension, request.scene]
             own += [{k: v for k, v in request.given.items() if k != "points"}, f"{request.tol:.3g}"]
             lines.writerows([*own, *row[:2], *(f"{x:.4g}" for x in row[2:])] for row in rows)
             file.flush()

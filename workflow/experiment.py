@@ -71,7 +71,7 @@ def check(config):
                     f"choose from {', '.join(choice)}"
                 )
     for name, parameters in ergodic_scenes(config).items():
-        if len(Scene(**parameters).state) > 2:
+        if Scene(**parameters).dimension > 2:
             raise SceneError(
                 f"config: 'theorems.ergodicity.scenes' has {name!r}, which has more than two state "
                 "variables; choose scenes with one or two"

@@ -42,7 +42,7 @@ def compared(name, scene, solved, sampled):
             f"{spread:.1g} by Monte Carlo; one of the two is wrong"
         )
     plain = (
-        {"scene": name, "variables": len(scene.state), "gamma2": value, "gamma2_error": bound}
+        {"scene": name, "variables": scene.dimension, "gamma2": value, "gamma2_error": bound}
         | {f"monte_carlo_{key}": number for key, number in drawn.items()}
         | {"monte_carlo_corrected": corrected, "spread": spread, "deviation": deviation}
     )

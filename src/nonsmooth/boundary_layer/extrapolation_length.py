@@ -7,7 +7,6 @@ from nonsmooth.boundary_layer.asymmetric_line import walls
 from nonsmooth.boundary_layer.sampled import sampled_length
 from nonsmooth.boundary_layer.symmetric_line import EXACT, expansion
 from nonsmooth.estimate import Estimate
-from nonsmooth.line.eigenfunctions import applies
 
 
 def extrapolation_length(scene, tol=None, seed=0, threads=None):
@@ -43,7 +42,7 @@ def extrapolation_length(scene, tol=None, seed=0, threads=None):
         constants, errors = two_variables.leading(scene, **({} if tol is None else {"tol": tol}))
         seconds = time.perf_counter() - began
         return Estimate(constants.length, errors.length, "tensor grids", seconds)
-    if not applies(scene):
+    if not scene.is_line:
         return sampled_length(scene, tol, seed, threads)
     tol = EXACT if tol is None else tol
     if not scene.is_odd():

@@ -13,7 +13,6 @@ import scipy.linalg
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.solvers import EVEN, ODD
 from nonsmooth.kinetic.ordinates_line import UNHURRIED, ordinates
-from nonsmooth.line.eigenfunctions import applies
 
 EXACT = 1e-8
 _DEGREES = (7, 9, 11, 13, 15, 17, 20)
@@ -70,7 +69,7 @@ def expansion(scene, tol=EXACT):
     SceneError, ToleranceError
         As `extrapolation_length`.
     """
-    if not (applies(scene) and scene.is_odd()):
+    if not (scene.is_line and scene.is_odd()):
         raise SceneError(
             f"the constants of second order are computed for the state (y), white noise and odd g, "
             f"not for ({', '.join(scene.state)}) with {scene.noise.title} and g = "

@@ -40,7 +40,7 @@ class Leading:
 
 def applies(scene):
     """Whether the scene has two state variables, a finite n, and odd g and drift."""
-    return len(scene.state) == 2 and not math.isinf(scene.n) and scene.is_odd()
+    return scene.dimension == 2 and not math.isinf(scene.n) and scene.is_odd()
 
 
 def leading(scene, tol=1e-3):

@@ -31,7 +31,6 @@ from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
 from nonsmooth.boundary_layer.symmetric_line import expansion
 from nonsmooth.crossing.expansion import Constants, Formula
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.line.eigenfunctions import applies
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.statistics.variance import limit_variance
 
@@ -106,7 +105,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
 
 
 def _highest_order(scene):
-    if not applies(scene):
+    if not scene.is_line:
         return 1
     return 3 if scene.is_odd() else 2
 
@@ -114,7 +113,7 @@ def _highest_order(scene):
 @lru_cache(maxsize=16)  # the same for every p and interval
 def _constants(scene, seed, threads):
     """Return the constants of the formula, and their errors."""
-    if applies(scene) and scene.is_odd():
+    if scene.is_line and scene.is_odd():
         return tuple(
             Constants(
                 diffusion=c.diffusion,
@@ -130,7 +129,7 @@ def _constants(scene, seed, threads):
             )
             for c in expansion(scene)
         )
-    if applies(scene):
+    if scene.is_line:
         return tuple(Constants(**vars(c)) for c in walls(scene))
     if two_variables.applies(scene):
         return tuple(

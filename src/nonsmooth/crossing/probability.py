@@ -14,7 +14,6 @@ from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.counting import least_steps, sampled_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, spectral_crossing
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.line.eigenfunctions import applies
 from nonsmooth.scenes.thresholds import bounds
 from nonsmooth.statistics.variance import limit_variance, stationary_mean
 
@@ -165,8 +164,8 @@ def _attempts(scene, horizons, p, given):
         fast = pilot <= _PILOT_SHARE * most and least <= most
         return [("monte_carlo", {"most": most})] if fast else []
 
-    attempts = sampled(windows * _SECONDS[len(scene.state)]) + attempts
-    covered = applies(scene) and scene.is_odd() and not scene.grows_too_fast
+    attempts = sampled(windows * _SECONDS[scene.dimension]) + attempts
+    covered = scene.is_line and scene.is_odd() and not scene.grows_too_fast
     if covered and tol * p**2 >= _REACHED:
         attempts = [*sampled(_FORMULA), ("corrected", {"order": 3}), *attempts]
     return attempts

@@ -189,7 +189,7 @@ def edges(scene, symbol, end, layers):
         # an elastic wall is as deep as the box, however stiff: the motion in it turns through
         # the plane of y and sqrt(n) x, and the solution is as curved there as it is in y
         outward = _towards(beyond, min(finest, beyond / 8))
-        if len(scene.state) <= 2:  # elements are dear with more
+        if scene.dimension <= 2:  # elements are dear with more
             outward = np.append(outward, beyond * _WITHIN)
     else:
         outward = _towards(beyond, min(finest, beyond * _STOPPING))

@@ -19,7 +19,7 @@ _BOXED = 1  # level on which a larger box is tried; that matters less on finer o
 
 def applies(scene):
     """Whether the scene has two state variables and a finite n."""
-    return len(scene.state) == 2 and math.isfinite(scene.n)
+    return scene.dimension == 2 and math.isfinite(scene.n)
 
 
 def climb(grid, solve, share):

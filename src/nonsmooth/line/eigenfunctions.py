@@ -45,11 +45,6 @@ class Spectrum:
     start: np.ndarray
 
 
-def applies(scene):
-    """Whether the scene has a one-dimensional, self-adjoint generator."""
-    return scene.state == ("y",) and scene.noise.kind == "white"
-
-
 def potential(scene):
     """Return -log m, up to a constant, as a sympy expression in y, and its kink.
 
@@ -58,7 +53,7 @@ def potential(scene):
     SceneError
         If the scene's state is not y alone or its noise is not white.
     """
-    if not applies(scene):
+    if not scene.is_line:
         raise SceneError(
             f"no deterministic solver for the state ({', '.join(scene.state)}) with "
             f"{scene.noise.title}; use simulate, which takes every scene"

@@ -77,7 +77,7 @@ def poisson_slope(scene):
     PoissonSlope or None
         None if the scene has another state or noise.
     """
-    if not eigenfunctions.applies(scene):
+    if not scene.is_line:
         return None
     energy, _ = eigenfunctions.potential(scene)
     depth = vectorised(energy, (models.y,))

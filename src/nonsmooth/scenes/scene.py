@@ -240,6 +240,16 @@ class Scene:
                 return tuple(s.name for s in STATE_VARIABLES if s in needed)
             needed = grown
 
+    @property
+    def dimension(self):
+        """Number of variables of `state`."""
+        return len(self.state)
+
+    @property
+    def is_line(self):
+        """Whether the state is the velocity alone with white noise: A is self-adjoint there."""
+        return self.state == ("y",) and self.noise.kind == "white"
+
     def is_odd(self):
         """Whether g and the drift change sign with the state, so that E g = 0 by symmetry."""
         return self._odd

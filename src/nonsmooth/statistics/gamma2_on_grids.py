@@ -87,7 +87,7 @@ def growth_to(scene, tol):
 
 def _refined(scene, tol):
     """gamma^2, its error, the dearest of the combined grids, and the residual."""
-    count = len(scene.state)
+    count = scene.dimension
     coarse = fitted(scene, math.log(1 / tol) + SPARE, _FITTED[count])
     coarse = raised(coarse, _COARSE[count] - _FITTED[count])
     base, accuracy, residual = _iterated(scene, coarse, tol)

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids import mesh, tensor_grid
-from nonsmooth.line import eigenfunctions, quadrature
+from nonsmooth.line import quadrature
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.models import STATE_VARIABLES
 from nonsmooth.scenes.penalties import n as penalization
@@ -52,7 +52,7 @@ def invariant_density(scene, tol=None, points=None):
         If `tol` cannot be met; the message has the error reached.
     """
     _require_finite(scene)
-    tol = _EXACT[len(scene.state)] if tol is None else tol
+    tol = _EXACT[scene.dimension] if tol is None else tol
     if closed := closed_form(scene):
         if points is None:
             ends = mesh.box(scene, math.log(1 / tol) + tensor_grid.SPARE)
@@ -108,7 +108,7 @@ def closed_form(scene):
         noise, by quadrature; for obstacles with white noise, of the Gibbs measure
         exp(-2 C_b/sigma^2 (y^2/2 + U_n(x))); empty for all other scenes.
     """
-    if eigenfunctions.applies(scene):
+    if scene.is_line:
         return {"y": lambda y: quadrature.density(scene, y)}
     if scene.noise.kind != "white" or not scene.mechanics.in_potential:
         return {}

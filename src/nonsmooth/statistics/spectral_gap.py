@@ -47,9 +47,9 @@ def spectral_gap(scene, tol=1e-6):
         If `tol` cannot be met; the message has the best value and its error.
     """
     began = time.perf_counter()
-    if eigenfunctions.applies(scene):
+    if scene.is_line:
         solve, levels = _of_polynomials, (8, 12, 16, 20, 24)
-    elif len(scene.state) == 2 and not math.isinf(scene.n):
+    elif scene.dimension == 2 and not math.isinf(scene.n):
         grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, _FIT)
 
         def solve(scene, level, margin=0.0):
@@ -72,7 +72,7 @@ def spectral_gap(scene, tol=1e-6):
         fall = max((b / a for a, b in pairwise(changes[-3:])), default=1.0)
         error = changes[-1] * math.sqrt(min(fall, 1.0)) + rounding
         while error <= tol * value:
-            if len(scene.state) == 1:
+            if scene.dimension == 1:
                 beyond = 0.0
             else:
                 coarse = next(unseen)

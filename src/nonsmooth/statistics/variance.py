@@ -102,7 +102,7 @@ def asymptotic_variance(scene, tol=None, method=None, seed=0, threads=None):
 def _fastest_first(scene, tol):
     if "y" not in scene.state:
         return ["monte_carlo"]
-    many = len(scene.state)
+    many = scene.dimension
     tol = _EXACT[many] if tol is None else tol
     if tol >= _FASTER_SAMPLED[many]:
         return ["monte_carlo", "deterministic"]
@@ -115,12 +115,12 @@ def _deterministic(scene, tol):
             f"g = '{scene.observable}' is a function of the noise alone, which the solvers do not "
             "take without the velocity; use method='monte_carlo'"
         )
-    tol = _EXACT[len(scene.state)] if tol is None else tol
+    tol = _EXACT[scene.dimension] if tol is None else tol
     if uniform_refinement.applies(scene) and (
         found := gamma2_on_grids.growth_on_ladder(scene, tol)
     ):
         return *found, "spectral elements"
-    if not eigenfunctions.applies(scene):
+    if not scene.is_line:
         return *growth_to(scene, tol), "spectral elements"
     if (
         scene.mechanics.velocity_penalty != 0
@@ -148,7 +148,7 @@ def limit_variance(scene, seed=0, threads=None):
     """
     # beyond two variables a percent, enough for W_star, is sampled faster than solved
     accuracy, way = {1: (None, "deterministic"), 2: (2e-3, "deterministic")}.get(
-        len(scene.state), (None, "monte_carlo")
+        scene.dimension, (None, "monte_carlo")
     )
     return asymptotic_variance(scene, accuracy, way, seed, threads)
 
@@ -168,7 +168,7 @@ def stationary_mean(scene, seed=0, threads=None):
     """
     if scene.is_odd():
         return 0.0, 0.0
-    if eigenfunctions.applies(scene):
+    if scene.is_line:
         return quadrature.mean(scene)
     _, sample = _settled_growth(
         scene, _first_step(scene), PILOT_PATHS, labelled(seed, "mean"), threads
@@ -310,7 +310,7 @@ def variance(scene, times, tol=None, method=None, seed=0, threads=None):
             pass
     if method == "monte_carlo" or solve is None:
         return _sampled_moments(scene, times, _SAMPLED if tol is None else tol, seed, threads)
-    tol = _VARIANCE[len(scene.state)] if tol is None else tol
+    tol = _VARIANCE[scene.dimension] if tol is None else tol
     (w, v), (w_error, v_error) = solve(scene, times, tol)
     _require_accuracy(times, v, v_error, tol)
     return _moments_of(times, w, w_error, v, v_error, "deterministic")
@@ -341,9 +341,9 @@ def _moments_of(times, w, w_error, v, v_error, method):
 
 def _solver(scene):
     """Choose what solves for w and v, of (scene, times, tol); None if there is nothing."""
-    if eigenfunctions.applies(scene):
+    if scene.is_line:
         return _of_velocity
-    if len(scene.state) == 2 and not math.isinf(scene.n) and "y" in scene.state:
+    if scene.dimension == 2 and not math.isinf(scene.n) and "y" in scene.state:
         return moments_on_grids.moments
     return None
 

@@ -121,7 +121,7 @@ def poisson_bound(scene, enlargement=2.0):
 
 
 def _require_grid(scene):
-    if len(scene.state) > 2 or math.isinf(scene.n):
+    if scene.dimension > 2 or math.isinf(scene.n):
         raise SceneError(
             "the decay in the V-norm is computed for one or two state variables and a finite n, "
             f"not for ({', '.join(scene.state)}) at n = {scene.n:g}; choose another scene"

@@ -26,7 +26,7 @@ def densities(scene, tolerances, bins, step, time, paths, seed, threads):
     state = paths_at(scene, [time], step, paths, (seed, "density"), threads=threads)[-1]
     samples = {name: z for name, z in zip(scene.state, state, strict=False) if name in TITLES}
     edges = {name: _edges(scene, name, z, bins) for name, z in samples.items()}
-    solved = bin_averages(scene, edges, tolerances[len(scene.state) - 1])
+    solved = bin_averages(scene, edges, tolerances[scene.dimension - 1])
     coords, variables = {}, {}
     for name, z in samples.items():
         ends, title = edges[name], TITLES[name]

@@ -46,7 +46,7 @@ def potentials(scenes, tolerance, times, paths, halving_paths, step, seed, threa
     rows = []
     for number, parameters in enumerate(scenes):
         scene, own = by_formulas(parameters), (seed, "potentials", number)
-        solved = asymptotic_variance(scene, tolerance[len(scene.state) - 1], "deterministic")
+        solved = asymptotic_variance(scene, tolerance[scene.dimension - 1], "deterministic")
 
         def sample(scene, paths, label, own=own):
             return growth(

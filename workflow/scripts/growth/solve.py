@@ -20,7 +20,7 @@ def solve(scene, tolerance):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    found = asymptotic_variance(scene, tolerance[len(scene.state) - 1], "deterministic")
+    found = asymptotic_variance(scene, tolerance[scene.dimension - 1], "deterministic")
     return artifact.dataset(
         "Growth rate of the variance of the integrated observable",
         f"{scene}, by {found.method}",

@@ -4,7 +4,6 @@ from functools import partial
 
 import numpy as np
 
-from nonsmooth.line.eigenfunctions import applies
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -66,7 +65,7 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
             return np.array([[s.mean(), s.std(ddof=1) / np.sqrt(paths)] for s in samples]).T
 
         def differences(factor, chain=chain, name=name):
-            if applies(chain[0]):
+            if chain[0].is_line:
                 return np.array([growth_difference(one) for one in chain]).T
             own = [(seed, "weak rates", name, one.n) for one in chain]
             return np.array(

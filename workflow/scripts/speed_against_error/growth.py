@@ -39,7 +39,7 @@ def growth(solved, names, scenes, degrees, tolerances, times, step, paths, round
     for name, exact in zip(names, solved, strict=True):
         scene = Scene(**scenes[name]["scene"])
         value = float(exact["gamma2"])
-        variables = len(scene.state)
+        variables = scene.dimension
         panel = f"{scene.model.replace('_', '-')}, {scene.noise.kind} ({variables}-D)"
         references[panel] = 1.0, float(exact["gamma2_error"]) / value
         if variables == 1:

@@ -15,7 +15,7 @@ from nonsmooth.crossing.first_passage.line import Late, Line
 from nonsmooth.crossing.first_passage.time_stepping import UnstableError
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.kinetic import tail_descent
-from nonsmooth.line.eigenfunctions import applies, potential
+from nonsmooth.line.eigenfunctions import potential
 from nonsmooth.scenes import models
 from nonsmooth.scenes.formulas import vectorised
 
@@ -54,7 +54,7 @@ def spectral_crossing(scene, lower, upper, times, tol):
     ToleranceError
         If `tol` is not met; the message has the error.
     """
-    if applies(scene):
+    if scene.is_line:
         solve = _on_line
     elif plane.applies(scene):
         solve = _in_plane
@@ -76,7 +76,7 @@ def spectral_crossing(scene, lower, upper, times, tol):
 
 def default_tolerance(scene):
     """Return the absolute error that `spectral_crossing` keeps unless told; None if it cannot."""
-    if applies(scene):
+    if scene.is_line:
         return Line.tol
     return plane.Plane.tol if plane.applies(scene) else None
 

@@ -19,7 +19,7 @@ _THIN = 0.1  # thinnest slab at resolution 0, relative to the way that g goes wh
 def applies(scene):
     """Whether the scene has two state variables, white or Langevin noise, odd g and drift."""
     return (
-        len(scene.state) == 2
+        scene.dimension == 2
         and scene.noise.kind != "hamiltonian"
         and not math.isinf(scene.n)
         and scene.is_odd()
