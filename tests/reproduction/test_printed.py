@@ -1,0 +1,24 @@
+"""What the paper prints, and the numbers in the place of its labels."""
+
+import pytest
+
+from nonsmooth.errors import ArtifactError
+from reproduction.printed import numbered, printed_values
+
+
+def test_values_of_table_4():
+    """As the paper prints them."""
+    assert printed_values("tab:convergence-vng-n")[100] == 0.136784
+
+
+def test_labels_become_the_numbers_that_readers_see():
+    """Several in one text; text without a label stays as it is."""
+    text = r"claim \ref{eq:lyapu-bound-S4} and \ref{lemma1}"
+    assert numbered(text) == "claim (30) and Lemma 2"
+    assert numbered("$x^2$") == "$x^2$"
+
+
+def test_an_unknown_label_is_refused():
+    """With where to add it."""
+    with pytest.raises(ArtifactError, match=r"printed\.yaml has no number for the label misspelt"):
+        numbered(r"eq. \ref{misspelt}")
