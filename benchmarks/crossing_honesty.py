@@ -1,4 +1,4 @@
-"""Whether the stated errors of spectral crossing probabilities are larger than the true ones.
+"""Whether the stated errors of deterministic crossing probabilities are larger than the true ones.
 
 `python -m benchmarks.crossing_honesty [classes]` draws random scenes with the state y and white
 noise and random intervals, and compares three times of a curve with the Laplace transform inverted
@@ -65,7 +65,7 @@ def compare(formulas, seed):
     scene, threshold, p = draw(np.random.default_rng(seed), formulas)
     began = time.process_time()
     try:
-        found = ns.crossing_probability(scene, threshold, HORIZONS, p, method="spectral")
+        found = ns.crossing_probability(scene, threshold, HORIZONS, p, method="deterministic")
     except ToleranceError as error:
         print(f"{seed}: {scene}, {threshold}, p = {p:.3g}: {error}", file=sys.stderr, flush=True)
         return None

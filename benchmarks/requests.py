@@ -504,11 +504,11 @@ def true_variance(request):
 
 
 def true_crossing(request):
-    """Take the spectral method, where there is one."""
+    """Take the deterministic method, where there is one."""
     if request.scene.is_line:
         finest = request.tol / min(request.tol / FINER, 1e-6)
         try:
-            return more_resolved(request, (finest, FINER, RESOLVED), method="spectral")
+            return more_resolved(request, (finest, FINER, RESOLVED), method="deterministic")
         except ToleranceError as error:
             print(request, error, file=sys.stderr)
     return sampled(request)
@@ -591,8 +591,8 @@ QUANTITIES = {
             "corrected, order 2": by_correction(2),
             "corrected, order 3": by_correction(3),
             "monte_carlo": by_sampling,
-            "spectral": by("spectral"),
-            "looser spectral": looser(method="spectral"),
+            "deterministic": by("deterministic"),
+            "looser deterministic": looser(method="deterministic"),
         },
         {"asymptotic": asymptotic, "plain Monte Carlo": plain_crossing},
     ),

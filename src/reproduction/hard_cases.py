@@ -487,21 +487,21 @@ CASES = [
     ),
     Case(
         "$p = 10^6$",
-        "crossing, spectral",
-        _crossed(_friction(), 0.6, 2.0, p=1e6, method="spectral"),
+        "crossing, deterministic",
+        _crossed(_friction(), 0.6, 2.0, p=1e6, method="deterministic"),
         _other(_crossed(_friction(), 0.6, 2.0, p=1e6, method="corrected", order=3)),
     ),
     Case(
         "$p = 10^{-3}$",
         "crossing, Monte Carlo",
         _crossed(_friction(), 1e-3, 2.0, p=1e-3),
-        _other(_crossed(_friction(), 1e-3, 2.0, p=1e-3, method="spectral")),
+        _other(_crossed(_friction(), 1e-3, 2.0, p=1e-3, method="deterministic")),
     ),
     Case(
         "$p = 10^{-3}$",
         "crossing, corrected formula",
         _crossed(_friction(), 1e-3, 2.0, p=1e-3, method="corrected", order=2),
-        _other(_crossed(_friction(), 1e-3, 2.0, p=1e-3, method="spectral")),
+        _other(_crossed(_friction(), 1e-3, 2.0, p=1e-3, method="deterministic")),
     ),
     Case(
         "$b = 10^{-6}$", "brownian_crossing", _brownian_value(1e-6, 2.0), lambda: Result(1.0, 0.0)
@@ -520,8 +520,8 @@ CASES = [
     ),
     Case(
         "$b$ of probability $10^{-12}$",
-        "crossing, spectral",
-        _crossed(_friction(), 3.75, 2.0, p=1000, method="spectral"),
+        "crossing, deterministic",
+        _crossed(_friction(), 3.75, 2.0, p=1000, method="deterministic"),
         _other(_crossed(_friction(), 3.75, 2.0, p=1000, method="corrected", order=3)),
     ),
     Case(
@@ -606,8 +606,8 @@ CASES = [
     Case("start at $y = 50$", "variance", _solved(_TAIL, 2.0), None),
     Case(
         "start at $y = 50$",
-        "crossing, spectral",
-        _crossed(_TAIL, 40.0, 1.6, method="spectral"),
+        "crossing, deterministic",
+        _crossed(_TAIL, 40.0, 1.6, method="deterministic"),
         _flown,
     ),
     Case(

@@ -99,7 +99,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
         raise ToleranceError(
             f"the corrected formula of order {order} has W = {value[worst]:.7g} at T = "
             f"{horizons[worst]:g} with an error of {error[worst]:.1e}, above tol = {tol:g}; raise "
-            "the order or p, loosen tol, or use method='spectral' or 'monte_carlo'"
+            "the order or p, loosen tol, or use method='deterministic' or 'monte_carlo'"
         )
     return value, error
 

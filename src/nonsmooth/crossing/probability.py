@@ -12,13 +12,13 @@ from nonsmooth.checks import require_increasing, require_positive
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.counting import least_steps, sampled_crossing
-from nonsmooth.crossing.first_passage.distribution import default_tolerance, spectral_crossing
+from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.scenes.thresholds import bounds
 from nonsmooth.statistics.variance import limit_variance, stationary_mean
 
 # Seconds on one core, as measured: of a coarse step of a path, with all that comes on top, and of
-# the spectral method for one and two variables for times that grow by the factor _WINDOW
+# the deterministic method for one and two variables for times that grow by the factor _WINDOW
 _STEP = 4e-9
 _SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
 _SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
@@ -52,9 +52,9 @@ def crossing_probability(
         Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem, > 0.
-    method : {"monte_carlo", "spectral", "asymptotic", "corrected"}, optional
-        ``"spectral"`` is deterministic, for the state y with white noise and, in up to a minute or
-        two, for two state variables with finite n, odd g and drift, and white or Langevin noise. It
+    method : {"monte_carlo", "deterministic", "asymptotic", "corrected"}, optional
+        ``"deterministic"`` is for the state y with white noise and, in up to a minute or two, for
+        two state variables with finite n, odd g and drift, and white or Langevin noise. It
         is taken there, unless a method or a parameter of another one is given, or `tol` is so loose
         that ``"monte_carlo"`` should be faster or, for one variable, the error of ``"corrected"``
         is below it; ``"monte_carlo"`` elsewhere: for three and four state variables, and for two
@@ -67,8 +67,8 @@ def crossing_probability(
         Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
         given, on the number of paths (three standard errors are at most three quarters of `tol`)
         and on the time step (its bias is a quarter, measured again and refined if it is not).
-        ``"spectral"``: 1e-7 unless given, or 1e-4 for two variables. ``"corrected"``: any error is
-        returned unless it is given. ``"asymptotic"`` has none.
+        ``"deterministic"``: 1e-7 unless given, or 1e-4 for two variables. ``"corrected"``: any
+        error is returned unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -87,11 +87,11 @@ def crossing_probability(
         Over `horizon`, with the method among its attributes: `probability` and
         `probability_error`, for ``"monte_carlo"`` the standard error, with the 95 % confidence
         limits `lower` and `upper`, and `step_bias`, the bias of the time step as measured by
-        halving it, with its standard error `step_bias_error`; for ``"spectral"`` the difference
-        of two resolutions, with `survival` and `survival_error`, the complement, for one variable
-        to relative accuracy; for ``"corrected"`` a bound of the distance to the probability at
-        this p, from the size of the next corrections; for ``"asymptotic"`` the error inherited
-        from gamma^2 only, not the distance to a finite p.
+        halving it, with its standard error `step_bias_error`; for ``"deterministic"`` the
+        difference of two resolutions, with `survival` and `survival_error`, the complement, for
+        one variable to relative accuracy; for ``"corrected"`` a bound of the distance to the
+        probability at this p, from the size of the next corrections; for ``"asymptotic"`` the
+        error inherited from gamma^2 only, not the distance to a finite p.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def crossing_probability(
         except ToleranceError as error:
             failed[name] = error
     else:  # what the solver has reached is the best there is
-        raise failed.get("spectral", failed[name])
+        raise failed.get("deterministic", failed[name])
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
         coords={"horizon": horizons},
@@ -151,7 +151,7 @@ def _attempts(scene, horizons, p, given):
     if default is None or {"step", "paths", "precision"} & given.keys():
         return [("monte_carlo", {})]
     tol = given.get("tol", default)
-    attempts = [("spectral", {})]
+    attempts = [("deterministic", {})]
     if tol >= _SAMPLED:
         attempts.append(("monte_carlo", {"most": _PATIENCE}))
     if "tol" not in given:
@@ -184,9 +184,9 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
     return {"probability": value, "probability_error": error}, {}
 
 
-def _spectral(scene, threshold, horizons, p, seed, threads, tol=None):
+def _deterministic(scene, threshold, horizons, p, seed, threads, tol=None):
     lower, upper = np.sqrt(p) * np.array(threshold)
-    return spectral_crossing(scene, lower, upper, p * horizons, tol), {}
+    return deterministic_crossing(scene, lower, upper, p * horizons, tol), {}
 
 
 def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
@@ -199,7 +199,7 @@ def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
 # horizons, as a dict, and the attributes.
 METHODS = {
     "monte_carlo": sampled_crossing,
-    "spectral": _spectral,
+    "deterministic": _deterministic,
     "asymptotic": _asymptotic,
     "corrected": _corrected,
 }

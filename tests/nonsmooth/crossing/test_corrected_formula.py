@@ -22,7 +22,7 @@ ONE_SIDED, UNEQUAL = (-np.inf, 0.6), (-0.3, 0.6)
 @lru_cache
 def exact(threshold, p, scene, horizons, tol):
     """Spectral values."""
-    return ns.crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tol)
+    return ns.crossing_probability(scene, threshold, horizons, p, method="deterministic", tol=tol)
 
 
 def errors(threshold, p, scene, formula, horizons=HORIZONS, tol=1e-7):

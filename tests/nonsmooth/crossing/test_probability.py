@@ -169,8 +169,8 @@ def test_halving_shifts_the_passage_times_by_the_bias_of_the_variance():
 
 
 def test_tolerance_is_met():
-    """|error| <= tol at every horizon, against the spectral method; a false alarm in 100 runs."""
-    exact = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=10, method="spectral")["probability"]
+    """|error| <= tol at every horizon; a false alarm in 100 runs."""
+    exact = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=10, method="deterministic").probability
     for tol in (3e-2, 1e-2, 3e-3):
         run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=10, method="monte_carlo", tol=tol)
         assert np.max(np.abs(run["probability"] - exact)) < tol
@@ -185,7 +185,7 @@ def test_tolerance_out_of_reach_is_refused_with_the_best_value():
 
 def test_what_hardly_happens_takes_few_paths():
     """Where W is far below tol, some counts by 1/tol show it; a false alarm in 300 runs."""
-    exact = ns.crossing_probability(SCENE, 3.0, HORIZONS, p=10, method="spectral")["probability"]
+    exact = ns.crossing_probability(SCENE, 3.0, HORIZONS, p=10, method="deterministic").probability
     assert exact[-1] < 1e-5
     for tol, most in ((1e-3, 13_000), (1e-2, 1_200)):
         run = ns.crossing_probability(SCENE, 3.0, HORIZONS, p=10, method="monte_carlo", tol=tol)
@@ -197,10 +197,10 @@ def test_corrected_formula_is_taken_where_its_error_is_small():
     """At large p, but not where g is above the Lyapunov function or tol below the error."""
     problem = {"threshold": 0.6, "horizons": HORIZONS, "p": 1000.0}
     run = ns.crossing_probability(SCENE, **problem, tol=1e-4)
-    exact = ns.crossing_probability(SCENE, **problem, method="spectral")
+    exact = ns.crossing_probability(SCENE, **problem, method="deterministic")
     assert run.attrs["method"] == "corrected"
     assert np.max(np.abs(run["probability"] - exact["probability"])) < 1e-4
-    assert ns.crossing_probability(SCENE, **problem, tol=2e-8).attrs["method"] == "spectral"
+    assert ns.crossing_probability(SCENE, **problem, tol=2e-8).attrs["method"] == "deterministic"
     beyond = ns.Scene("friction", n=100, observable="y**3")
     run = ns.crossing_probability(beyond, 0.6, [2.0], p=1000.0, tol=1e-4)
     assert run.attrs["method"] != "corrected"

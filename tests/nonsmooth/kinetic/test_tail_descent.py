@@ -19,7 +19,7 @@ def far(start, **parameters):
 
 def spectral(scene, threshold, horizons, tol=1e-7):
     """Spectral values."""
-    return ns.crossing_probability(scene, threshold, horizons, method="spectral", tol=tol)
+    return ns.crossing_probability(scene, threshold, horizons, method="deterministic", tol=tol)
 
 
 def test_radau_is_exact_to_its_order():

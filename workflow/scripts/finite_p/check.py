@@ -57,7 +57,7 @@ def containment(monte_carlo, exact, seed):
         missed = (truth < lower - allowance) | (truth > upper + allowance)
         if np.any(missed):
             raise CheckError(
-                f"figure 2b: the spectral curve at p = {p[len(contained)]:g} is outside the "
+                f"figure 2b: the exact curve at p = {p[len(contained)]:g} is outside the "
                 f"simultaneous band of Monte Carlo from T = {horizon[missed][0]:g} on; "
                 "look for a mistake in either"
             )
@@ -76,7 +76,7 @@ def containment(monte_carlo, exact, seed):
     least = np.quantile(shares, RARELY)
     if share < least:
         raise CheckError(
-            f"figure 2b: the 95 % bands contain the spectral curves at {share:.1%} of all p and "
+            f"figure 2b: the 95 % bands contain the exact curves at {share:.1%} of all p and "
             f"T, chance allows {least:.1%}; look for a mistake in the bands or a biased time step"
         )
     return artifact.dataset(

@@ -1,4 +1,4 @@
-"""Figure 2b without Monte Carlo: W(sqrt(p) b, p T) by the spectral method."""
+"""Figure 2b without Monte Carlo: W(sqrt(p) b, p T) by the deterministic method."""
 
 import numpy as np
 
@@ -18,9 +18,11 @@ def exact(scene, threshold, horizon, outputs, first_time, tolerance, p):
     scene = Scene(**scene)
     horizons = horizon / outputs * np.arange(1, outputs + 1)
     horizons = horizons[horizons >= first_time * (1 - 1e-9)]
-    solution = crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tolerance)
+    solution = crossing_probability(
+        scene, threshold, horizons, p, method="deterministic", tol=tolerance
+    )
     return artifact.dataset(
-        "Threshold crossing probability by the spectral method",
+        "Threshold crossing probability by the deterministic method",
         f"{scene}, b = {threshold}, p = {p}",
         {"horizon": ("horizon", horizons, "T"), "p": ((), p, "scale p")},
         {

@@ -11,7 +11,7 @@ from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
 
-EXACT = {"method": "spectral", "tol": 1e-8}  # at p = 1e6 errors of order 1 are 1e-7
+EXACT = {"method": "deterministic", "tol": 1e-8}  # at p = 1e6 errors of order 1 are 1e-7
 LIMIT = "plain"  # states no distance to a finite p
 FORMULAS = {
     LIMIT: {"method": "asymptotic"},
@@ -92,7 +92,7 @@ def formulas(scene, threshold, horizons, p, fit_from):
             error,
             "error that it states; of the plain formula, from gamma^2 only",
         ),
-        "exact": (every[1:], exact, "probability by the spectral method"),
+        "exact": (every[1:], exact, "probability by the deterministic method"),
         "exact_error": (every[1:], exact_error, "difference of two resolutions"),
         "distance": (every[:2], distance, "largest error of the formula over T"),
         "distance_error": (every[:2], distance_error, "largest error of the exact value over T"),

@@ -136,7 +136,7 @@ def _counted(scene, p, step, paths, seed):
 
 
 def _inverted(scene, p):
-    return crossing_probability(scene, 0.6, [2.0], p, method="spectral")["probability"][0]
+    return crossing_probability(scene, 0.6, [2.0], p, method="deterministic")["probability"][0]
 
 
 def _rate(scene, tolerance):

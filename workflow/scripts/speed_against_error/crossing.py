@@ -53,7 +53,11 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
             run = timed(unseeded(_inverted), scene, threshold, horizon, scale, degree, contour)
             cases.append(Case(panel, "spectral, one solution", degree, run))
         for name, size, options in (
-            ("spectral, with error bound", tolerance, {"method": "spectral", "tol": tolerance}),
+            (
+                "spectral, with error bound",
+                tolerance,
+                {"method": "deterministic", "tol": tolerance},
+            ),
             ("asymptotic formula", 0, {"method": "asymptotic"}),
             ("corrected formula, order 1", 1, {"method": "corrected", "order": 1}),
             ("corrected formula, order 2", 2, {"method": "corrected", "order": 2}),

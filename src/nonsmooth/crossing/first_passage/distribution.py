@@ -28,7 +28,7 @@ _UNDERFLOW = 1e-300
 _NEGLECTED = 1e-9  # bound of what is left out of the law of a far start
 
 
-def spectral_crossing(scene, lower, upper, times, tol):
+def deterministic_crossing(scene, lower, upper, times, tol):
     """P(int_0^t g leaves (lower, upper) before t).
 
     Parameters
@@ -60,8 +60,8 @@ def spectral_crossing(scene, lower, upper, times, tol):
         solve = _in_plane
     else:
         raise SceneError(
-            "the spectral method needs the state (y) and white noise, or two state variables with "
-            "finite n, odd g and drift, and white or Langevin noise, not "
+            "the deterministic method needs the state (y) and white noise, or two state variables "
+            "with finite n, odd g and drift, and white or Langevin noise, not "
             f"({', '.join(scene.state)}) with {scene.noise.title} and n = {scene.n:g}; "
             "use method='monte_carlo'"
         )
@@ -75,14 +75,14 @@ def spectral_crossing(scene, lower, upper, times, tol):
 
 
 def default_tolerance(scene):
-    """Return the absolute error that `spectral_crossing` keeps unless told; None if it cannot."""
+    """Return the absolute error of `deterministic_crossing` unless told; None if it cannot."""
     if scene.is_line:
         return Line.tol
     return plane.Plane.tol if plane.applies(scene) else None
 
 
 def _on_line(scene, lower, upper, times, tol):
-    """`spectral_crossing` for the state y with white noise."""
+    """`deterministic_crossing` for the state y with white noise."""
     if _start_depth(scene) > _TAIL:
         return _from_afar(scene, lower, upper, times, tol)
     problem = Line(scene, lower, upper)
@@ -90,7 +90,7 @@ def _on_line(scene, lower, upper, times, tol):
 
 
 def _in_plane(scene, lower, upper, times, tol):
-    """`spectral_crossing` for two state variables."""
+    """`deterministic_crossing` for two state variables."""
     problem = plane.Plane(scene, lower, upper)
     if time_stepping.applies(problem, times):
         marched = time_stepping.March(scene, lower, upper)

@@ -151,7 +151,7 @@ class TestMilneOfTwoVariables:
 
 def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
     """Spectral values."""
-    return ns.crossing_probability(scene, threshold, horizons, p, method="spectral", tol=tol)
+    return ns.crossing_probability(scene, threshold, horizons, p, method="deterministic", tol=tol)
 
 
 class TestSampledLength:
@@ -353,8 +353,8 @@ class TestSpectral:
     @pytest.mark.parametrize(
         ("scene", "given", "method"),
         [
-            (FRICTION, {}, "spectral"),
-            (FRICTION, {"tol": 1e-5}, "spectral"),
+            (FRICTION, {}, "deterministic"),
+            (FRICTION, {"tol": 1e-5}, "deterministic"),
             (FRICTION, {"tol": 1e-2}, "monte_carlo"),  # 1 ms against a second
             (FRICTION, {"paths": 10}, "monte_carlo"),
             (FRICTION, {"order": 1}, "corrected"),

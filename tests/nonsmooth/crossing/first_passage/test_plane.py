@@ -120,7 +120,7 @@ class TestCrossing:
         """Within 4.5 standard errors, false alarms 3e-5 in all, and the measured bias."""
         scene, level = SCENES[name]
         horizons = [2.0]
-        found = ns.crossing_probability(scene, level, horizons, p, method="spectral", tol=2e-3)
+        found = ns.crossing_probability(scene, level, horizons, p, method="deterministic", tol=2e-3)
         assert np.all(found.probability_error < 2e-3)
         sample = ns.crossing_probability(scene, level, horizons, p, step=0.02, paths=paths, seed=7)
         allowed = 4.5 * sample.probability_error + np.abs(sample.step_bias)
@@ -145,4 +145,4 @@ class TestCrossing:
         """The message names the method."""
         scene = ns.Scene("elasto_plastic", "hamiltonian")
         with pytest.raises(SceneError, match="monte_carlo"):
-            ns.crossing_probability(scene, 0.3, [1.0], 30, method="spectral")
+            ns.crossing_probability(scene, 0.3, [1.0], 30, method="deterministic")
