@@ -6,6 +6,7 @@ import numpy as np
 import sympy
 
 from nonsmooth.grids.elements import continuous, discontinuous
+from nonsmooth.grids.grading import geometric, layers, mirrored, split
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.models import eta, x, y, zeta
 
@@ -155,7 +156,7 @@ def _has_walls(scene, end):
     return scene.mechanics.argument == x and not _is_smooth(scene, x, end)
 
 
-def edges(scene, symbol, end, layers):
+def edges(scene, symbol, end, depth):
     """Edges of the elements of one variable, symmetric about 0.
 
     Parameters
@@ -164,7 +165,7 @@ def edges(scene, symbol, end, layers):
     symbol : sympy.Symbol
     end : float
         Half width.
-    layers : int
+    depth : int
         Number of ever smaller elements towards a kink.
 
     Returns
@@ -174,14 +175,14 @@ def edges(scene, symbol, end, layers):
     if _is_smooth(scene, symbol, end):
         holding = _holding(scene) if symbol == eta else 0.0
         if symbol != scene.noise.driven and 0 < holding < end:
-            return _mirrored(np.array([holding, end]))
+            return _both_sides(np.array([holding, end]))
         count = _DRIVEN if symbol == scene.noise.driven else _TRANSPORTED
         return np.linspace(-end, end, count + 1)
     knot = knots(scene)[symbol]
     if knot == 0:
-        outward = end * 2.5 ** -np.arange(layers + 1.0)
-        return _mirrored(outward)
-    finest = knot * _INWARD**-layers
+        outward = geometric(end, 2.5, depth + 1)
+        return _both_sides(outward)
+    finest = knot * _INWARD**-depth
     if symbol == y:  # the kink of friction, whose distance from 0 is the finest scale there is
         finest *= _INWARD**1.5
     beyond = end - knot
@@ -197,25 +198,19 @@ def edges(scene, symbol, end, layers):
         inward = _towards(knot, knot * _STOPPING)
     else:
         inward = _towards(knot, min(finest, knot / 2))
-    return _mirrored(np.concatenate([knot + outward, knot - inward, [knot]]))
+    return _both_sides(np.concatenate([knot + outward, knot - inward, [knot]]))
 
 
 def _towards(distance, finest):
-    count = max(1, math.ceil(math.log(distance / finest, _INWARD)))
-    return distance * _INWARD ** -np.arange(float(count))
+    return geometric(distance, _INWARD, layers(distance, finest, _INWARD))
 
 
-def _mirrored(positive):
+def _both_sides(positive):
     """Add the origin and the negative half, and split elements that are too wide."""
     end = positive.max()
     positive = np.unique(np.append(positive[positive > 1e-14 * end], 0.0))
     parts = np.ceil(np.diff(positive) * _WIDEST / end).astype(int)
-    pieces = [
-        left + width * np.arange(count) / count
-        for left, width, count in zip(positive, np.diff(positive), parts, strict=False)
-    ]
-    positive = np.append(np.concatenate(pieces), end)
-    return np.unique(np.concatenate([-positive, positive]))
+    return mirrored(split(positive, parts))
 
 
 def potentials(scene, ends):
@@ -261,11 +256,7 @@ def _resolved(edges, potential, temperature):
     excess = np.maximum(excess, excess[::-1])  # rounding must not make the mesh asymmetric
     parts = np.ceil(np.sqrt(np.clip(excess / _BEND, 1, _MOST**2)) - 1e-6).astype(int)
     parts += 1 - parts % 2  # an even number of nodes stays even
-    pieces = [
-        left + width * np.arange(count) / count
-        for left, width, count in zip(edges, np.diff(edges), parts, strict=False)
-    ]
-    return np.append(np.concatenate(pieces), edges[-1])
+    return split(edges, parts)
 
 
 def axes(scene, ends, levels, margin=0.0):
@@ -292,8 +283,8 @@ def axes(scene, ends, levels, margin=0.0):
     for symbol in variables(scene):
         level, end = levels[symbol], ends[symbol]
         # with many variables, layers are dear
-        layers = 2 + level if len(levels) <= 2 else _LAYERS.get(symbol, 1)
-        where = edges(scene, symbol, end, layers)
+        depth = 2 + level if len(levels) <= 2 else _LAYERS.get(symbol, 1)
+        where = edges(scene, symbol, end, depth)
         if symbol in wells:
             potential, temperature = wells[symbol]
             where = _resolved(where, vectorised(potential, (symbol,)), temperature)

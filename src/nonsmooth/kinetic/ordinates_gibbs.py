@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from numpy.polynomial import legendre
 
 from nonsmooth.grids.elements import lagrange, lobatto
+from nonsmooth.grids.grading import mirrored
 from nonsmooth.grids.solvers import EVEN, ODD
 from nonsmooth.kinetic.ordinates_plane import DROPPED, PlaneOrdinates
 from nonsmooth.scenes.formulas import vectorised
@@ -118,7 +119,7 @@ def _edges(scene, end, level):
     positive = min(wall, end) * np.array(inside)
     if wall < end:
         positive = np.append(positive, wall + (end - wall) * np.array(within))
-    return np.concatenate([-positive[::-1], [0.0], positive])
+    return mirrored(positive)
 
 
 def _nodes(edges, local, weights):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nonsmooth.grids.elements import continuous, lobatto
+from nonsmooth.grids.grading import distinct
 from nonsmooth.grids.solvers import EVEN, ODD
 from nonsmooth.line import quadrature
 from nonsmooth.line.eigenfunctions import potential
@@ -237,8 +238,7 @@ def _edges(scene, depth, kinks, switches, time, reach, deepest, grading, distanc
         )
 
     edges = np.concatenate([[-end, 0.0, end], kinks, zeros, *others])
-    edges = np.unique(edges[np.abs(edges) <= end])
-    edges = edges[np.append(True, np.diff(edges) > 1e-12 * end)]
+    edges = distinct(edges[np.abs(edges) <= end], 1e-12 * end)
     if scene.is_odd():
         edges = (edges - edges[::-1]) / 2
     while True:

@@ -14,6 +14,7 @@ import scipy.sparse.linalg as spla
 from nonsmooth.grids import mesh
 from nonsmooth.grids.elements import continuous, discontinuous
 from nonsmooth.grids.generator import evaluate, start_row
+from nonsmooth.grids.grading import distinct, graded, mirrored
 from nonsmooth.grids.solvers import EVEN, ODD, Direct
 from nonsmooth.grids.tensor_grid import fitted
 
@@ -144,9 +145,7 @@ def _axes(scene, ends, level, time):
     for symbol in mesh.variables(scene):
         end = ends[symbol]
         edges = _positive(scene, symbol, end, ratio, finest, time)
-        edges = np.unique(edges[(edges > 1e-12 * end) & (edges <= end)])
-        edges = edges[np.append(True, np.diff(edges) > 1e-9 * end)]
-        edges = np.unique(np.concatenate([-edges, [0.0], edges]))
+        edges = mirrored(distinct(edges[(edges > 1e-12 * end) & (edges <= end)], 1e-9 * end))
         if symbol == scene.noise.driven:
             made[symbol] = continuous(edges, driven_degree)
         else:
@@ -172,21 +171,3 @@ def _positive(scene, symbol, end, ratio, share, time):
         return np.append(edges, knot - graded(knot / 2, knot / 64, ratio))
     inner = knot if wall else end
     return np.append(edges, graded(inner, max(share * inner, 0.0 if wall else knot), ratio))
-
-
-def graded(end, finest, ratio):
-    """Edges from an end down to an element no larger than the finest, in equal ratios.
-
-    Parameters
-    ----------
-    end, finest : float
-    ratio : float
-        At most.
-
-    Returns
-    -------
-    numpy.ndarray
-        Decreasing.
-    """
-    count = max(1, math.ceil(math.log(end / finest, ratio) - 1e-9))
-    return end * (finest / end) ** (np.arange(count + 1) / count)

@@ -15,6 +15,7 @@ import sympy
 from numpy.polynomial import legendre
 
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.grids.grading import growing, mirrored
 from nonsmooth.scenes import models
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
@@ -87,17 +88,10 @@ def mesh(scene):
         )
     end = max(end, 1.5 * start)
     knot = min(knot, end)  # beyond, the kink is never seen
-    outer = [knot]
-    width = min(max(_SMALLEST, knot / 4), end / 8)
-    while outer[-1] < end:
-        outer.append(outer[-1] + width)
-        width = min(2 * width, end / 8)
-    inner, width = [knot], min(max(_SMALLEST, knot / 4), end / 8)
-    while inner[-1] > 1.5 * width:
-        inner.append(inner[-1] - width)
-        width = min(2 * width, end / 8)
-    edges = {0.0, start, *outer, *inner}
-    return np.unique([side * edge for edge in edges for side in (-1, 1)])
+    finest, widest = min(max(_SMALLEST, knot / 4), end / 8), end / 8
+    outer = growing(knot, end, finest, widest)
+    inner = -growing(-knot, 0.0, finest, widest, spare=1.5)
+    return mirrored([start, *outer, *inner])
 
 
 @lru_cache(maxsize=8)

@@ -23,6 +23,7 @@ from scipy.optimize import brentq
 
 from nonsmooth.errors import SceneError
 from nonsmooth.estimate import require
+from nonsmooth.grids.grading import distinct
 from nonsmooth.line.eigenfunctions import potential
 from nonsmooth.scenes import models
 from nonsmooth.scenes.formulas import vectorised
@@ -313,8 +314,7 @@ def _edges(problem):
 
 def _apart(edges, end):
     """Sort edges within [-end, end]; of those that only rounding keeps apart, keep the first."""
-    edges = np.unique(np.clip(edges, -end, end))
-    return edges[np.append(True, np.diff(edges) > 8 * _EPS * np.abs(edges[1:]))]
+    return distinct(np.clip(edges, -end, end), relative=8 * _EPS)
 
 
 def switches(expression):

@@ -19,10 +19,11 @@ from scipy.interpolate import CubicSpline
 from nonsmooth.crossing.first_passage.plane import Plane
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import discontinuous
+from nonsmooth.grids.grading import graded
 from nonsmooth.grids.solvers import EVEN, ODD
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
-from nonsmooth.kinetic.ordinates_plane import graded, plane_ordinates
+from nonsmooth.kinetic.ordinates_plane import plane_ordinates
 
 # resolution of the state; degree in x, and its smallest element over the lesser of the distance and
 # of the way that g goes while it relaxes; steps, relative to the longest
