@@ -19,7 +19,7 @@ from tests.test_wells import langevin_growth
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.scenes.models import x
+from nonsmooth.scenes.symbols import x
 
 POTENTIALS = ("{a}*x**2/2", "{a}*x**2/2 + {b}*cos(3*x)", "x**2/2 + {a}*exp(-2*x**2)", "{a}*x**4/4")
 FORCINGS = ("{a}*eta**2/2", "eta**4/4 + {a}*eta**2/2", "eta**4/4 - {a}*eta**2/2")

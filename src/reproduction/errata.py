@@ -19,9 +19,9 @@ from nonsmooth.line import eigenfunctions
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.line.finite_differences import moments_with_error, system
 from nonsmooth.scenes import equations
-from nonsmooth.scenes.models import eta, x, y, zeta
 from nonsmooth.scenes.noises import NOISES, KanaiTajimi, OrnsteinUhlenbeck, hamiltonian_drift
 from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import eta, x, y, zeta
 from nonsmooth.theory import assumptions, drift_bounds, lyapunov
 
 _GRID = 6.0, 601  # half width and nodes of the paper's scheme, the kinks at n = 5 among them

@@ -16,7 +16,7 @@ from nonsmooth.paths.ensembles import parallel
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.time_loop import march
-from nonsmooth.scenes.models import STATE_VARIABLES
+from nonsmooth.scenes.symbols import STATE_VARIABLES
 from nonsmooth.statistics.sampled_gamma2 import integrals
 
 _LEVEL = 0.95

@@ -8,7 +8,7 @@ import scipy.sparse.linalg as spla
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solvers import EVEN, ODD, factorise
-from nonsmooth.scenes.models import x
+from nonsmooth.scenes.symbols import x
 
 _DEPTH = 14.0  # of the box in the norm of residuals, that of a normal density
 _KRYLOV = 150  # vectors kept by GMRES

@@ -8,7 +8,7 @@ import sympy
 from nonsmooth.grids.elements import continuous, discontinuous
 from nonsmooth.grids.grading import geometric, layers, mirrored, split
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import eta, x, y, zeta
+from nonsmooth.scenes.symbols import eta, x, y, zeta
 
 ORDER = (
     eta,

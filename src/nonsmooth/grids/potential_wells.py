@@ -8,7 +8,7 @@ import scipy
 
 from nonsmooth.grids import mesh
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import x
+from nonsmooth.scenes.symbols import x
 
 _DEPTH = 20.0  # of the box that is searched, in temperatures
 _POINTS = 4001

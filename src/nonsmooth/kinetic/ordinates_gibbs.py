@@ -18,8 +18,8 @@ from nonsmooth.grids.grading import mirrored
 from nonsmooth.grids.solvers import EVEN, ODD
 from nonsmooth.kinetic.ordinates_plane import DROPPED, PlaneOrdinates
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import x, y
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.symbols import x, y
 
 # Hermite degrees; degree in x; ends of the elements relative to the distance of the walls, and
 # within a wall relative to its depth: of slabs, and of a march, which many nodes cost less

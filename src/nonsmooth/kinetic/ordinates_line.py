@@ -14,7 +14,7 @@ from nonsmooth.grids.grading import distinct
 from nonsmooth.grids.solvers import EVEN, ODD
 from nonsmooth.line import quadrature
 from nonsmooth.line.eigenfunctions import potential
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
 UNHURRIED = 1e3  # a time beyond which the grid no longer depends on it, in units of 1 / C_b
@@ -144,9 +144,9 @@ def ordinates(
     Ordinates
     """
     energy, knot = potential(scene)
-    depth = vectorised(energy, (models.y,))
+    depth = vectorised(energy, (symbols.y,))
     expression = scene.numerical_observable()
-    observable = vectorised(expression, (models.y,))
+    observable = vectorised(expression, (symbols.y,))
     edges = _edges(
         scene,
         depth,
@@ -216,7 +216,7 @@ def _edges(scene, depth, kinks, switches, time, reach, deepest, grading, distanc
     )
     end = min(max(end, abs(start) + _REACH * fine), abs(start) + reach)
     inside = np.linspace(-end, end, 501)
-    functions = [vectorised(f, (models.y,)) for f in switches]
+    functions = [vectorised(f, (symbols.y,)) for f in switches]
     zeros, *others = [quadrature.sign_changes(f, inside) for f in functions]
     zeros = ends_of_zeros(functions[0], np.concatenate([zeros, *others]), end)
     starts = [start, -start] if scene.is_odd() else [start]

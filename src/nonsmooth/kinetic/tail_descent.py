@@ -20,7 +20,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.kinetic.ordinates_line import ends_of_zeros
 from nonsmooth.line import quadrature
 from nonsmooth.line.eigenfunctions import potential
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
 _LEVEL = 8.0  # depth of the level: logarithm of the largest invariant density over that there
@@ -138,7 +138,7 @@ def tail(scene):
     SceneError
         If g changes its sign between the level and the start, or beyond.
     """
-    y = models.y
+    y = symbols.y
     energy, knot = potential(scene)
     expression = scene.numerical_observable()
     depth, g = vectorised(energy, (y,)), vectorised(expression, (y,))

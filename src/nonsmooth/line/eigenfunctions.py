@@ -16,7 +16,7 @@ from numpy.polynomial import legendre
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.grading import growing, mirrored
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
 
@@ -59,7 +59,7 @@ def potential(scene):
             f"no deterministic solver for the state ({', '.join(scene.state)}) with "
             f"{scene.noise.title}; use simulate, which takes every scene"
         )
-    y, penalty = models.y, scene.mechanics.penalty
+    y, penalty = symbols.y, scene.mechanics.penalty
     energy, knot = scene.damping * y**2 / 2, 0.0
     if scene.mechanics.velocity_penalty != 0:
         knot, _, _ = penalty.at(scene.n)
@@ -74,7 +74,7 @@ def potential(scene):
 def mesh(scene):
     """Return the element edges on which the drift is smooth, increasing, symmetric about 0."""
     energy, knot = potential(scene)
-    depth = vectorised(energy, (models.y,))
+    depth = vectorised(energy, (symbols.y,))
     end = 1.0
     while depth(end / 1.25) > _NEGLIGIBLE:
         end /= 1.25
@@ -124,8 +124,8 @@ def assemble(scene, degree):
     """
     edges = mesh(scene)
     energy, _ = potential(scene)
-    depth = vectorised(energy, (models.y,))
-    g = vectorised(scene.numerical_observable(), (models.y,))
+    depth = vectorised(energy, (symbols.y,))
+    g = vectorised(scene.numerical_observable(), (symbols.y,))
     nodes, points, weights, values, slopes = _reference_element(degree)
     size = (len(edges) - 1) * degree + 1
     mass, stiffness, observable = np.zeros((3, size, size))

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg.lapack import dgttrf, dgttrs
 
 from nonsmooth.errors import SceneError
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
 
@@ -94,7 +94,7 @@ def system(scene, half_width, nodes, time_step):
         raise SceneError(f"the paper's scheme needs an odd number of nodes, got {nodes}; add one")
     y = np.linspace(-half_width, half_width, nodes)
     width = y[1] - y[0]
-    speed = -vectorised(scene.numerical_drift()[models.y], (models.y,))(y)
+    speed = -vectorised(scene.numerical_drift()[symbols.y], (symbols.y,))(y)
     peclet = np.max(np.abs(speed)) * width / scene.noise.sigma**2
     if not peclet <= 1:
         raise SceneError(
@@ -112,7 +112,7 @@ def system(scene, half_width, nodes, time_step):
         lower,
         main,
         upper,
-        time_step * vectorised(scene.numerical_observable(), (models.y,))(y),
+        time_step * vectorised(scene.numerical_observable(), (symbols.y,))(y),
     )
 
 

@@ -25,7 +25,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.estimate import require
 from nonsmooth.grids.grading import distinct
 from nonsmooth.line.eigenfunctions import potential
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 
@@ -59,7 +59,7 @@ class _Problem:
 
     def g(self, y):
         with np.errstate(all="ignore"):  # of the branches that are not taken
-            value = vectorised(self.varying, (models.y,))(y)
+            value = vectorised(self.varying, (symbols.y,))(y)
         if not np.all(np.isfinite(value)):
             place = np.asarray(y)[~np.isfinite(value)][0]
             raise SceneError(
@@ -291,8 +291,8 @@ def _solved(scene):
 
 def _problem(scene):
     energy, knot = potential(scene)
-    constant, varying = scene.numerical_observable().as_independent(models.y, as_Add=True)
-    return _Problem(scene, vectorised(energy, (models.y,)), knot, float(constant), varying)
+    constant, varying = scene.numerical_observable().as_independent(symbols.y, as_Add=True)
+    return _Problem(scene, vectorised(energy, (symbols.y,)), knot, float(constant), varying)
 
 
 def _edges(problem):
@@ -302,7 +302,7 @@ def _edges(problem):
     if problem.depth(end) > _DEEPEST:
         end = brentq(lambda y: problem.depth(y) - _DEEPEST, 0.0, end)
     edges = _apart([-end, -problem.knot, 0.0, problem.knot, end], end)
-    functions = [vectorised(f, (models.y,)) for f in switches(problem.varying)]
+    functions = [vectorised(f, (symbols.y,)) for f in switches(problem.varying)]
     while True:  # edges may bring to light kinks that were too close together
         while np.any(steep := np.abs(np.diff(problem.depth(edges))) > _STEEPEST):
             edges = np.sort(np.append(edges, (edges[:-1] + edges[1:])[steep] / 2))
@@ -324,7 +324,7 @@ def switches(expression):
         differences += [a - b for a, b in combinations(f.args, 2)]
     differences += [f.args[0] for f in expression.atoms(sympy.Abs, sympy.sign, sympy.log)]
     differences += [f.base for f in expression.atoms(sympy.Pow) if not f.exp.is_nonnegative]
-    return [f for f in dict.fromkeys(differences) if f.free_symbols == {models.y}]
+    return [f for f in dict.fromkeys(differences) if f.free_symbols == {symbols.y}]
 
 
 def sign_changes(function, edges):
@@ -431,7 +431,7 @@ def _formula_error(varying, solution):
     error = _EPS * (np.abs(e.points * slope) + np.abs(e.g))
     weight = solution.influence.sum(axis=1)
     chosen = np.argsort(weight)[-_SAMPLED:]
-    exact = sympy.lambdify(models.y, varying, "mpmath")
+    exact = sympy.lambdify(symbols.y, varying, "mpmath")
     with mpmath.workdps(40):
         for k in chosen:
             error[k] += max(

@@ -14,7 +14,7 @@ import scipy
 from numpy.polynomial import chebyshev
 
 from nonsmooth.line import eigenfunctions
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
 DEGREE = 12  # of the polynomial that kernels evaluate; what it misses is below 5 % of u'
@@ -80,7 +80,7 @@ def poisson_slope(scene):
     if not scene.is_line:
         return None
     energy, _ = eigenfunctions.potential(scene)
-    depth = vectorised(energy, (models.y,))
+    depth = vectorised(energy, (symbols.y,))
     reach = 1.0
     while depth(reach / 1.1) > _NEGLIGIBLE:
         reach /= 1.1
@@ -88,7 +88,7 @@ def poisson_slope(scene):
         reach *= 1.1
     y = np.linspace(-reach, reach, _POINTS)
     density = np.exp(-depth(y))
-    g = vectorised(scene.numerical_observable(), (models.y,))(y) - eigenfunctions.mean(scene)
+    g = vectorised(scene.numerical_observable(), (symbols.y,))(y) - eigenfunctions.mean(scene)
     left = scipy.integrate.cumulative_simpson(g * density, x=y, initial=0)
     flux = np.where(y < 0, -left, left[-1] - left)
     return PoissonSlope(reach, 2 / scene.noise.sigma**2 * flux / density, density)

@@ -13,7 +13,7 @@ from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.paths.time_loop import march, march_pair
-from nonsmooth.scenes.models import STATE_VARIABLES
+from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 _EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
 

@@ -6,9 +6,10 @@ the tests compare with what the kernels do.
 
 import sympy
 
-from nonsmooth.scenes.models import STATE_VARIABLES, eta, oscillator, x, y, zeta
+from nonsmooth.scenes.models.model import oscillator
 from nonsmooth.scenes.noises import hamiltonian_drift, langevin_drift
 from nonsmooth.scenes.penalties import n
+from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
 
 U = sympy.Function("U")
 v = sympy.Function("v")

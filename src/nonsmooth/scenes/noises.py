@@ -8,7 +8,7 @@ import sympy
 
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.formulas import parse, vectorised
-from nonsmooth.scenes.models import eta, y, zeta
+from nonsmooth.scenes.symbols import eta, y, zeta
 
 # Where "at infinity" a potential is examined: far enough for the leading term of any
 # reasonable formula to dominate, near enough for its fourth power not to overflow.

@@ -8,6 +8,7 @@ and the typeset tables all derive from them.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import sympy
 
@@ -52,11 +53,7 @@ class Penalty:
 
     def at(self, stiffness):
         """Return (knot, inner, outer) as floats for n = `stiffness`, which may be inf."""
-        value = sympy.oo if stiffness == float("inf") else stiffness
-        return tuple(
-            float(sympy.limit(quantity, n, value))
-            for quantity in (self.knot, self.inner, self.outer)
-        )
+        return _at(self, float(stiffness))
 
 
 ABSOLUTE_VALUE = Penalty(
@@ -65,3 +62,12 @@ ABSOLUTE_VALUE = Penalty(
 BARRIER = Penalty(
     name=r"\chi_n", limit=r"\chi_K(%s)", knot=sympy.Integer(1), inner=sympy.Integer(0), outer=n
 )
+
+
+@lru_cache(maxsize=1024)
+def _at(penalty, stiffness):
+    value = sympy.oo if stiffness == float("inf") else stiffness
+    return tuple(
+        float(sympy.limit(quantity, n, value))
+        for quantity in (penalty.knot, penalty.inner, penalty.outer)
+    )

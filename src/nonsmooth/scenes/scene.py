@@ -11,10 +11,12 @@ import numpy as np
 import sympy
 
 from nonsmooth.errors import AssumptionWarning, SceneError
-from nonsmooth.scenes import models, noises
+from nonsmooth.scenes import noises, symbols
 from nonsmooth.scenes.formulas import parse, vectorised
-from nonsmooth.scenes.models import STATE_VARIABLES, x
+from nonsmooth.scenes.models.model import Model
+from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.symbols import STATE_VARIABLES, x
 
 
 @dataclass(frozen=True)
@@ -23,8 +25,8 @@ class Scene:
 
     Parameters
     ----------
-    model : str
-        ``"elasto_plastic"``, ``"friction"`` or ``"obstacle"``.
+    model : str or Model
+        ``"elasto_plastic"``, ``"friction"``, ``"obstacle"``, or a model object.
     noise : str or White or Langevin or Hamiltonian
         ``"white"``, ``"langevin"`` (unit Ornstein-Uhlenbeck), ``"hamiltonian"`` (unit
         Kanai-Tajimi), or a noise object.
@@ -48,7 +50,7 @@ class Scene:
         If a formula cannot be read.
     """
 
-    model: str
+    model: str | Model
     noise: object = "white"
     n: float = 100.0
     damping: float = 1.0
@@ -62,7 +64,11 @@ class Scene:
         self._warn_if_g_grows()
 
     def _check(self):
-        _require_known("model", self.model, models.MODELS)
+        if isinstance(self.model, Model):  # one that has a known name goes by it
+            if MODELS.get(self.model.name) == self.model:
+                object.__setattr__(self, "model", self.model.name)
+        else:
+            _require_known("model", self.model, MODELS)
         if isinstance(self.noise, str):
             _require_known("noise", self.noise, noises.NOISES)
             object.__setattr__(self, "noise", noises.NOISES[self.noise])
@@ -94,14 +100,11 @@ class Scene:
             raise SceneError("a scene needs a finite damping; choose a positive number")
         for name in self.start:
             _require_known("start variable", name, [s.name for s in self.variables])
-        if (
-            self.n == float("inf")
-            and self.model in ("elasto_plastic", "obstacle")
-            and abs(self.start.get("x", 0.0)) > 1
-        ):
+        wall = self.mechanics.wall
+        if math.isinf(self.n) and abs(self.start.get("x", 0.0)) > wall:
             raise SceneError(
-                f"at n = inf the displacement is confined to [-1, 1], but it starts at "
-                f"{self.start['x']}; start inside or choose a finite n"
+                f"at n = inf the displacement is confined to [{-wall:g}, {wall:g}], but it starts "
+                f"at {self.start['x']}; start inside or choose a finite n"
             )
         unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
         if unknown:
@@ -150,8 +153,9 @@ class Scene:
         used = [s for s in self.variables if s in self.observable_expression.free_symbols]
         signs = np.array(list(itertools.product([-1, 0, 1], repeat=len(used))), dtype=float)
         place = {s: signs[:, [k]] * noises.FAR for k, s in enumerate(used)}
-        if x in place and math.isinf(self.n) and self.model in ("elasto_plastic", "obstacle"):
-            place[x] = np.clip(place[x], -1, 1)
+        if x in place and math.isinf(self.n):
+            wall = self.mechanics.wall
+            place[x] = np.clip(place[x], -wall, wall)
         with np.errstate(all="ignore"):
             V = 1 + sum(value**2 for value in place.values())
             if x in place:
@@ -167,7 +171,7 @@ class Scene:
     def identity(self):
         """All that tells scenes apart except n, by which no random stream depends."""
         return (
-            self.model,
+            self.model if isinstance(self.model, str) else repr(self.model),
             repr(self.noise),
             self.damping,
             self.potential,
@@ -191,15 +195,15 @@ class Scene:
         return other
 
     @property
-    def mechanics(self):
+    def mechanics(self) -> Model:
         """The mechanical model's definition."""
-        return models.MODELS[self.model]
+        return self.model if isinstance(self.model, Model) else MODELS[self.model]
 
     @cached_property
     def variables(self):
         """All the variables of the paper's state Z^n, whether the observable needs them or not."""
         own = set(self.noise.drift)
-        return tuple(s for s in STATE_VARIABLES if s in own or s in (models.y, models.x))
+        return tuple(s for s in STATE_VARIABLES if s in own or s in (symbols.y, symbols.x))
 
     @cached_property
     def potential_expression(self):
@@ -285,17 +289,17 @@ class Scene:
             If g is the force of a wall that is rigid, n = inf.
         """
         if self.observes_penalty_force and self.n == float("inf"):
-            if self.mechanics.velocity_penalty == 0:
+            if not self.mechanics.is_dry_friction:
                 raise SceneError(
                     f"at n = inf the {self.observable} is not a function of the state; "
                     "use Monte Carlo, which integrates it, or a finite n"
                 )
-            return sympy.sign(models.y)
+            return sympy.sign(symbols.y)
         return self._with_numbers(self.observable_expression)
 
     def _with_numbers(self, expression):
         return expression.subs(
-            {penalization: sympy.Float(self.n), models.damping: sympy.Float(self.damping)}
+            {penalization: sympy.Float(self.n), symbols.damping: sympy.Float(self.damping)}
         )
 
 

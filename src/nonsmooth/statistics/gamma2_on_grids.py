@@ -11,7 +11,7 @@ from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.solvers import EVEN, ODD
 from nonsmooth.grids.tensor_grid import LARGEST, MARGIN, SPARE, fitted, points, raised, solver
 from nonsmooth.grids.uniform_refinement import climb
-from nonsmooth.scenes.models import x, y
+from nonsmooth.scenes.symbols import x, y
 
 # levels by the number of variables: of the grids for box and shift, of the coarsest for gamma^2
 _FITTED, _COARSE = {2: 2, 3: 1, 4: 0}, {2: 2, 3: 1, 4: 1}

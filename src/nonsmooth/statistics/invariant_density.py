@@ -12,8 +12,8 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids import mesh, tensor_grid
 from nonsmooth.line import quadrature
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import STATE_VARIABLES
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 _POINTS = 201
 _EXACT = {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2}  # tolerance unless given, by the number of variables

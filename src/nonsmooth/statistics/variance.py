@@ -25,7 +25,7 @@ from nonsmooth.paths.resolution import (
     require_possible,
 )
 from nonsmooth.paths.simulation import simulate
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.relaxation import rate_at_infinity
 from nonsmooth.statistics import gamma2_on_grids, moments_on_grids
 from nonsmooth.statistics.gamma2_on_grids import growth_to
@@ -124,7 +124,7 @@ def _deterministic(scene, tol):
         return *growth_to(scene, tol), "spectral elements"
     if (
         scene.mechanics.velocity_penalty != 0
-        and scene.observable_expression == models.y
+        and scene.observable_expression == symbols.y
         and scene.noise.sigma == 1.0
     ):
         value, error = friction_variance(scene.n, scene.damping)

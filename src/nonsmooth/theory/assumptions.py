@@ -15,8 +15,8 @@ from scipy.optimize import minimize_scalar
 
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import eta, x, zeta
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.symbols import eta, x, zeta
 
 _LINE = np.unique(np.concatenate([np.geomspace(1e-6, 1e6, 1201), np.linspace(0, 20, 801)]))
 _LINE = np.concatenate([-_LINE[::-1], [0.0], _LINE])

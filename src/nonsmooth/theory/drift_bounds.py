@@ -9,7 +9,7 @@ import numpy as np
 import sympy
 
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import eta, x, y, zeta
+from nonsmooth.scenes.symbols import eta, x, y, zeta
 from nonsmooth.theory import lyapunov
 
 

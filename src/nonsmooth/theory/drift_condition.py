@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from nonsmooth.scenes.models import STATE_VARIABLES, eta, x, y, zeta
+from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
 from nonsmooth.theory import drift_bounds, lyapunov
 
 _SMALLEST = 1e-6  # least non-zero value on each axis, besides the kinks

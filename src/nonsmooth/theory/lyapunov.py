@@ -17,10 +17,10 @@ import sympy
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes import equations
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import STATE_VARIABLES, eta, x, y, zeta
-from nonsmooth.scenes.models import damping as C_b
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
+from nonsmooth.scenes.symbols import damping as C_b
 from nonsmooth.theory import assumptions
 
 delta, epsilon, C_V, xi, K, M = sympy.symbols("delta epsilon C_V xi K M", positive=True)

@@ -10,7 +10,7 @@ import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import potential_wells
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import eta
+from nonsmooth.scenes.symbols import eta
 from nonsmooth.statistics import gamma2_on_grids
 
 

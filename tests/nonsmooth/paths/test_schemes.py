@@ -16,7 +16,7 @@ from nonsmooth.paths.kernels.panel import DELTA, ROWS, STATE, WIDTH, X, Y, new_p
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.schemes import SCHEMES, coefficients, scheme
 from nonsmooth.paths.time_loop import march
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 
 FALSE_ALARM = 1e-5
 HORIZON = 10.0
@@ -38,7 +38,7 @@ def kernel_step(name, scene, h, state, normal):
 
 def linear_second_moment(name, scene, h):
     """E[D(T)^2] of a linear scene by its scheme, exactly, from the kernels' matrices."""
-    rows = [i for i, s in enumerate(models.STATE_VARIABLES) if s.name in scene.state]
+    rows = [i for i, s in enumerate(symbols.STATE_VARIABLES) if s.name in scene.state]
     states = np.zeros((4, len(rows) + 1))
     states[rows, range(len(rows))] = 1.0
     after, gain = kernel_step(name, scene, h, states, np.r_[np.zeros(len(rows)), 1.0])
@@ -57,7 +57,7 @@ def linear_second_moment(name, scene, h):
 def linear_exact(scene):
     """E[D(T)^2] of a linear scene by the matrix exponential."""
     drift = scene.numerical_drift()
-    rows = [s for s in models.STATE_VARIABLES if s.name in scene.state]
+    rows = [s for s in symbols.STATE_VARIABLES if s.name in scene.state]
     size = len(rows) + 1
     matrix = np.zeros((size, size))
     at_rest = dict.fromkeys(rows, sympy.Float(1e-3))

@@ -8,9 +8,11 @@ import sympy
 from conftest import one_step
 
 import nonsmooth as ns
-from nonsmooth.scenes import equations, models
+from nonsmooth.scenes import equations, symbols
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import STATE_VARIABLES, x, y
+from nonsmooth.scenes.models.friction import FRICTION
+from nonsmooth.scenes.models.obstacle import OBSTACLE
+from nonsmooth.scenes.symbols import STATE_VARIABLES, x, y
 
 NOISES = {
     "white": "white",
@@ -35,7 +37,7 @@ def test_typeset_drift_is_the_kernels_drift(model, noise):
         model, NOISES[noise], n=7.0, damping=0.6, potential="x**2/2 + 0.3*cos(x)", observable="x"
     )
     typeset = {
-        s: equations.specialise(f, scene).subs(models.damping, scene.damping)
+        s: equations.specialise(f, scene).subs(symbols.damping, scene.damping)
         for s, f in equations.drift(scene.noise).items()
     }
     rng = np.random.default_rng(5)
@@ -57,7 +59,7 @@ def test_scene_and_table_have_one_drift(model, noise):
     scene = ns.Scene(model, NOISES[noise], n=3.0, potential="x**2", observable="x")
     rng = np.random.default_rng(6)
     numbers = {s: sympy.Float(value) for s, value in zip(STATE_VARIABLES, rng.normal(size=4))}  # noqa: B905
-    numbers[models.damping] = sympy.Float(scene.damping)
+    numbers[symbols.damping] = sympy.Float(scene.damping)
     for s, f in scene.numerical_drift().items():
         typeset = equations.specialise(equations.drift(scene.noise)[s], scene)
         assert float(typeset.subs(numbers)) == pytest.approx(float(f.subs(numbers)), rel=1e-12)
@@ -77,9 +79,9 @@ def test_noise_acts_on_the_first_variable_only(kind, driven):
 
 def test_table_3_potential_gives_the_obstacle_force():
     """U_n' - U' of the typeset potential is the penalty force of the kernels."""
-    obstacle = models.OBSTACLE
+    obstacle = OBSTACLE
     difference = sympy.diff(obstacle.added_potential, x) - obstacle.penalty_force
     for value, n in itertools.product((-2.5, -0.5, 0.3, 1.7), (2, 100)):
         assert float(difference.subs({x: value, equations.n: n})) == 0
     assert obstacle.velocity_penalty == obstacle.displacement_penalty == 0
-    assert models.FRICTION.velocity_penalty.free_symbols == {y, equations.n}
+    assert FRICTION.velocity_penalty.free_symbols == {y, equations.n}

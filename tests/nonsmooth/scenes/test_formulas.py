@@ -7,7 +7,7 @@ import pytest
 from nonsmooth.errors import ExpressionError
 from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
 from nonsmooth.scenes.formulas import parse, vectorised
-from nonsmooth.scenes.models import STATE_VARIABLES, x
+from nonsmooth.scenes.symbols import STATE_VARIABLES, x
 
 
 @numba.njit

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import elements, generator, mesh, tensor_grid
-from nonsmooth.scenes.models import STATE_VARIABLES, x, y
+from nonsmooth.scenes.symbols import STATE_VARIABLES, x, y
 
 
 def linear_reference(scene, square):

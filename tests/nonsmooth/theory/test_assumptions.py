@@ -7,7 +7,7 @@ import sympy
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.models import eta, x, zeta
+from nonsmooth.scenes.symbols import eta, x, zeta
 from nonsmooth.theory import assumptions, lyapunov
 
 POTENTIALS = ["x**2/2", "x**2/2 + 0.3*cos(3*x)", "x**2/2 + 4*exp(-x**2)", "x**2 - 3*cos(x)"]

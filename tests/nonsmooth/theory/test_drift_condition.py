@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.scenes.models import eta, x, y, zeta
+from nonsmooth.scenes.symbols import eta, x, y, zeta
 from nonsmooth.theory import lyapunov
 from nonsmooth.theory.drift_condition import grid, margins, variables
 

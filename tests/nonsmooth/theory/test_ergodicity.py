@@ -9,8 +9,8 @@ from scipy.optimize import minimize
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.line import quadrature
-from nonsmooth.scenes.models import x, y
 from nonsmooth.scenes.relaxation import rate_at_infinity
+from nonsmooth.scenes.symbols import x, y
 from nonsmooth.theory import ergodicity, lyapunov
 from nonsmooth.theory.ergodicity import decay_rate, poisson_bound
 

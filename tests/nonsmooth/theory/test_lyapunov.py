@@ -7,7 +7,7 @@ import sympy
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes import equations
-from nonsmooth.scenes.models import STATE_VARIABLES, eta, x, y, zeta
+from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
 from nonsmooth.theory import drift_bounds, lyapunov
 from nonsmooth.theory.lyapunov import C_V, C_b, K, M, delta, epsilon, xi
 

@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 
 from nonsmooth.paths.ensembles import paths_at
-from nonsmooth.scenes.models import x
 from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import x
 from nonsmooth.statistics.invariant_density import bin_averages
 from reproduction import artifact
 from reproduction.jobs import produce

@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
 from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw

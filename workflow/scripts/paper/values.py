@@ -8,7 +8,7 @@ import yaml
 from sympy import latex
 
 from nonsmooth.scenes.formulas import parse
-from nonsmooth.scenes.models import eta, x
+from nonsmooth.scenes.symbols import eta, x
 from reproduction.files import whole
 from reproduction.jobs import inputs, job
 from reproduction.plasticity import relaxation_time

@@ -4,7 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullFormatter
 
-from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
 from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw

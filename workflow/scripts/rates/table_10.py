@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.scene import Scene
 from reproduction.tables import scientific, typeset
 

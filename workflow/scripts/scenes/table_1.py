@@ -3,7 +3,8 @@
 import pandas as pd
 import sympy
 
-from nonsmooth.scenes.models import MODELS, x, y
+from nonsmooth.scenes.models.registry import MODELS
+from nonsmooth.scenes.symbols import x, y
 from reproduction.tables import typeset
 
 

@@ -4,7 +4,8 @@ import pandas as pd
 import sympy
 
 from nonsmooth.scenes.equations import U
-from nonsmooth.scenes.models import MODELS, x
+from nonsmooth.scenes.models.registry import MODELS
+from nonsmooth.scenes.symbols import x
 from reproduction.tables import typeset
 
 

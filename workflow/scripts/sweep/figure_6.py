@@ -4,7 +4,7 @@ from itertools import cycle
 
 import matplotlib.pyplot as plt
 
-from nonsmooth.scenes.models import MODELS
+from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
 from reproduction.plots import LOOKS, ORANGE, TEXT_WIDTH, draw

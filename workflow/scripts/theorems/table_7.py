@@ -4,7 +4,7 @@ import pandas as pd
 from sympy import latex
 
 from nonsmooth.scenes.formulas import parse
-from nonsmooth.scenes.models import eta
+from nonsmooth.scenes.symbols import eta
 from reproduction.tables import scientific, typeset
 
 COLUMNS = {

@@ -11,7 +11,7 @@ import numpy as np
 from nonsmooth.paths.kernels.compilation import inlined, kernel
 from nonsmooth.paths.kernels.random_numbers import BLOCK, generator_words
 from nonsmooth.paths.kernels.vector_math import larger, smaller
-from nonsmooth.scenes.models import STATE_VARIABLES
+from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 FLUSH = 64  # steps between additions in double precision
 

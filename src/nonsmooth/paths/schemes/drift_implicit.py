@@ -12,7 +12,7 @@ import numpy as np
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.panel import GAIN, Y, observe
 from nonsmooth.paths.kernels.vector_math import fma, like, minimum
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 
 
 class DriftImplicit(NamedTuple):
@@ -37,7 +37,7 @@ def handles(scene):
         scene.state == ("y",)
         and scene.noise.kind == "white"
         and scene.mechanics.velocity_penalty != 0
-        and scene.observable_expression == models.y
+        and scene.observable_expression == symbols.y
     )
 
 

@@ -11,7 +11,7 @@ from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
 from nonsmooth.paths.kernels.panel import GAIN, WIDTH, WORK, ZETA, observe
 from nonsmooth.paths.kernels.vector_math import fma, like
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 
 
 class EulerMaruyama(NamedTuple):
@@ -34,13 +34,13 @@ def coefficients(scene, step, precision="float32"):
     unit = number(math.sqrt(step) * scene.noise.sigma)
 
     def address(expression):
-        return compiled(sympy.sympify(expression), models.STATE_VARIABLES, precision).address
+        return compiled(sympy.sympify(expression), symbols.STATE_VARIABLES, precision).address
 
-    needed = [s if s.name in scene.state else None for s in models.STATE_VARIABLES]
+    needed = [s if s.name in scene.state else None for s in symbols.STATE_VARIABLES]
     return EulerMaruyama(
         step=number(step),
         normals=1,
-        driven=models.STATE_VARIABLES.index(scene.noise.driven),
+        driven=symbols.STATE_VARIABLES.index(scene.noise.driven),
         transition=(number(0),) * 4,
         factor=(unit, number(0), number(0)),
         drift=tuple(address(drift.get(symbol, 0)) for symbol in needed),
@@ -54,7 +54,7 @@ def longest_step(scene):
     |1 + h lambda| < 1 for every eigenvalue lambda of the drift's Jacobian.
     """
     drift = scene.numerical_drift()
-    rows = [symbol for symbol in models.STATE_VARIABLES if symbol.name in scene.state]
+    rows = [symbol for symbol in symbols.STATE_VARIABLES if symbol.name in scene.state]
     jacobian = sympy.Matrix([drift[symbol] for symbol in rows]).jacobian(rows)
     knot, _, _ = scene.mechanics.penalty.at(scene.n)
     limits = []

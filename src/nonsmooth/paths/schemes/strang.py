@@ -47,7 +47,7 @@ from nonsmooth.paths.kernels.panel import (
     observe,
 )
 from nonsmooth.paths.kernels.vector_math import fma, larger, like, maximum, minimum
-from nonsmooth.scenes import models
+from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
 # kernels compare integers, not names
@@ -110,21 +110,21 @@ def coefficients(scene, step, precision="float32"):
     """
     number = np.dtype(precision).type
     white = scene.noise.kind == "white"
-    equations = {models.y: -scene.damping * models.y} if white else scene.noise.drift
+    equations = {symbols.y: -scene.damping * symbols.y} if white else scene.noise.drift
     jacobian = sympy.Matrix(list(equations.values())).jacobian(list(equations))
     linear = _is_linear(equations)
     transition, factor = gaussian_step(
         np.array(jacobian, dtype=float) if linear else np.zeros((1, 1)), scene.noise.sigma, step
     )
     knot, inner, outer = scene.mechanics.penalty.at(scene.n)
-    slope = sympy.diff(scene.potential_expression, models.x)
+    slope = sympy.diff(scene.potential_expression, symbols.x)
     pushed = slope != 0 and "x" in scene.state
     observable = _observable_code(scene)
 
     def formula(expression, used):
         if not used:
             return 0
-        return compiled(sympy.sympify(expression), models.STATE_VARIABLES, precision).address
+        return compiled(sympy.sympify(expression), symbols.STATE_VARIABLES, precision).address
 
     return Strang(
         step=number(step),
@@ -145,7 +145,7 @@ def coefficients(scene, step, precision="float32"):
         factor=tuple(map(number, factor)),
         slope=formula(slope, pushed),
         first_drift=formula(scene.noise.drift.get(scene.noise.driven), not linear),
-        second_drift=formula(scene.noise.drift.get(models.eta), not linear),
+        second_drift=formula(scene.noise.drift.get(symbols.eta), not linear),
         formula=formula(scene.observable_expression, observable == _FORMULA),
         controlled=False,
         reach=number(1.0),
@@ -162,7 +162,7 @@ def longest_step(scene):
     limit = math.inf
     if "x" in scene.state:
         reach = 5.0 if scene.model == "friction" else 1.5
-        stiffness = vectorised(sympy.diff(scene.potential_expression, models.x, 2), (models.x,))
+        stiffness = vectorised(sympy.diff(scene.potential_expression, symbols.x, 2), (symbols.x,))
         with np.errstate(all="ignore"):
             largest = np.nanmax(stiffness(np.linspace(-reach, reach, 401)))
         limit = 2 / math.sqrt(largest) if largest > 0 else limit
@@ -185,7 +185,7 @@ def _is_linear(equations):
 def _observable_code(scene):
     if scene.observes_penalty_force:
         return _PENALTY_FORCE
-    return _VELOCITY if scene.observable_expression == models.y else _FORMULA
+    return _VELOCITY if scene.observable_expression == symbols.y else _FORMULA
 
 
 def gaussian_step(matrix, sigma, step):
