@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.ensembles import gram, integrals_at
 from nonsmooth.paths.moments import moments
-from nonsmooth.statistics.sampled_gamma2 import growth, integrals
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.statistics.sampled_gamma2 import slopes
 
 SCENE, STEP, PATHS, ROUNDS = ns.Scene("friction", n=100), 0.01, 64_000, 5
 TAU = [0.1, 1.0, 10.0, 100.0]
@@ -35,18 +36,18 @@ def main():
         for tau in TAU:
             seconds, found = measured(
                 lambda tau=tau, control=control: moments(
-                    gram(SCENE, [tau], STEP, PATHS, 1, control=control)
+                    gram(SCENE, [tau], Sampling(STEP, PATHS, 1), control)
                 )
             )
             for name in ("mean", "variance"):
                 error = found[f"{name}_error"][0]
                 cost.setdefault(f"{name} at tau = {tau:g}", []).append(error * np.sqrt(seconds))
         seconds, found = measured(
-            lambda control=control: growth(
-                integrals(SCENE, TIMES, STEP, PATHS // 4, 1, control=control), TIMES
+            lambda control=control: slopes(
+                integrals_at(SCENE, TIMES, Sampling(STEP, PATHS // 4, 1), control), TIMES
             )
         )
-        cost.setdefault("gamma^2", []).append(found.rate_error * np.sqrt(seconds))
+        cost.setdefault("gamma^2", []).append(found.gamma2_error * np.sqrt(seconds))
     table = pd.DataFrame(cost, index=["plain", "control variate"]).T
     table["times less time for the same error"] = (table["plain"] / table["control variate"]) ** 2
     print(table.to_string(float_format="{:.3g}".format))

@@ -10,9 +10,10 @@ from scipy import stats
 
 import nonsmooth as ns
 from nonsmooth.crossing.counting import first_passage_counts, proportion
-from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.ensembles import gram, integrals_at
 from nonsmooth.paths.moments import moments
-from nonsmooth.statistics.sampled_gamma2 import growth, integrals
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.statistics.sampled_gamma2 import slopes
 
 FRICTION = ns.Scene("friction", n=100)
 # the restoring force's gamma^2 is the forcing's spectrum at 0, whatever the yield
@@ -28,21 +29,21 @@ def within(value, error, truth):
 
 def of_moments(run, exact, control, paths=512):
     """Test mean and variance of D(5)."""
-    found = moments(gram(FRICTION, [5.0], 0.02, paths, (run, "moments"), control=control))
+    found = moments(gram(FRICTION, [5.0], Sampling(0.02, paths, (run, "moments")), control))
     return {name: within(found[name][0], found[f"{name}_error"][0], exact[name]) for name in exact}
 
 
 def of_growth(run, scene, truth, step, control, paths=512):
     """Test gamma^2."""
-    sample = integrals(scene, TIMES, step, paths, (run, "growth"), control=control)
-    found = growth(sample, TIMES)
-    return within(found.rate, found.rate_error, truth)
+    sample = integrals_at(scene, TIMES, Sampling(step, paths, (run, "growth")), control)
+    found = slopes(sample, TIMES)
+    return within(found.gamma2, found.gamma2_error, truth)
 
 
 def of_crossing(run, threshold, horizon, truth, paths):
     """Test a crossing probability by the interval for proportions."""
     crossed = first_passage_counts(
-        FRICTION, threshold, [horizon], 1.0, RARE_STEP, paths, (run, "crossing")
+        FRICTION, threshold, [horizon], 1.0, Sampling(RARE_STEP, paths, (run, "crossing"))
     )
     _, lower, upper = proportion(crossed[0], paths)
     return bool(lower <= truth <= upper)
@@ -51,7 +52,7 @@ def of_crossing(run, threshold, horizon, truth, paths):
 def rare_probability(paths):
     """Probability of the rare crossing with the runs' own step, from independent paths."""
     crossed = first_passage_counts(
-        FRICTION, RARE, [RARE_HORIZON], 1.0, RARE_STEP, paths, (0, "truth")
+        FRICTION, RARE, [RARE_HORIZON], 1.0, Sampling(RARE_STEP, paths, (0, "truth"))
     )
     return crossed[0] / paths
 

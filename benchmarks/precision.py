@@ -9,6 +9,7 @@ import nonsmooth as ns
 from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.moments import moments
+from nonsmooth.paths.sampling import Sampling
 
 SCENE, PATHS = ns.Scene("friction", n=100), 200_000
 
@@ -17,7 +18,7 @@ def main():
     """Compare figure 2a's variance curve and figure 2b's crossing counts."""
     tau = np.geomspace(0.02, 10, 20)
     single, double = (
-        moments(gram(SCENE, tau, 0.005, PATHS, 1, precision=precision))
+        moments(gram(SCENE, tau, Sampling(0.005, PATHS, 1, precision=precision)))
         for precision in ("float32", "float64")
     )
     change = np.abs(single["variance"] - double["variance"])
@@ -30,7 +31,9 @@ def main():
         paths = min(PATHS, int(2e7 / p / 20 * 10))
         counts = [
             np.cumsum(
-                first_passage_counts(SCENE, 0.6, horizons, p, 0.02, paths, 1, precision=precision)
+                first_passage_counts(
+                    SCENE, 0.6, horizons, p, Sampling(0.02, paths, 1, precision=precision)
+                )
             )
             for precision in ("float32", "float64")
         ]

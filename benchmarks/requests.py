@@ -30,11 +30,12 @@ from nonsmooth.errors import NonsmoothError, ToleranceError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.kinetic import tail_equation
 from nonsmooth.line import eigenfunctions, quadrature
-from nonsmooth.paths.ensembles import coupled, gram
+from nonsmooth.paths.ensembles import coupled, gram, integrals_at
 from nonsmooth.paths.moments import moments
 from nonsmooth.paths.resolution import SIGMAS, coarse_step
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.statistics import gamma2_on_grids, moments_on_grids
-from nonsmooth.statistics.sampled_gamma2 import growth, integrals
+from nonsmooth.statistics.sampled_gamma2 import slopes
 from nonsmooth.statistics.spectral_gap import _on as spectral_gap_on
 
 SEED, OUTPUT = 1, Path("results/requests")
@@ -354,10 +355,10 @@ def plain_growth(request):
     def run(share, seed):
         paths = plain_paths(math.sqrt(SPREAD["gamma^2"]), tol)
         step = coarse_step(scene) * share
-        sample = integrals(scene, GROWTH_TIMES, step, paths, (seed, "plain"), threads=1)
-        found = growth(sample, GROWTH_TIMES)
-        small = SIGMAS * found.rate_error <= tol * found.rate
-        return found.rate if small else None, SAMPLED
+        sampling = Sampling(step, paths, (seed, "plain"), threads=1)
+        found = slopes(integrals_at(scene, GROWTH_TIMES, sampling), GROWTH_TIMES)
+        small = SIGMAS * found.gamma2_error <= tol * found.gamma2
+        return found.gamma2 if small else None, SAMPLED
 
     if tol >= least_sampled(request):
         for share in STEPS:
@@ -372,7 +373,7 @@ def plain_variance(request):
     def run(share, seed):
         paths = plain_paths(size * math.sqrt(SPREAD["variance"]), tol)
         step = min(coarse_step(scene), times[-1] / 32) * share
-        found = moments(gram(scene, times, step, paths, (seed, "plain"), threads=1))
+        found = moments(gram(scene, times, Sampling(step, paths, (seed, "plain"), threads=1)))
         small = np.all(SIGMAS * found["variance_error"] <= tol * times)
         return found["variance"] if small else None, SAMPLED
 
@@ -389,9 +390,8 @@ def plain_crossing(request):
         W = request.reference[0]
         paths = plain_paths(math.sqrt(np.max(W * (1 - W))), tol)
         step, own = coarse_step(scene) * share, (seed, "plain")
-        counts = first_passage_counts(
-            scene, **request.given, step=step, paths=paths, seed=own, threads=1
-        )
+        sampling = Sampling(step, paths, own, threads=1)
+        counts = first_passage_counts(scene, **request.given, sampling=sampling)
         return np.cumsum(counts) / paths, SAMPLED
 
     if tol >= least_sampled(request):
@@ -655,9 +655,10 @@ def timed(run, most=math.inf):
 def warm(request):
     """Compile what the scene's formulas need."""
     step = coarse_step(request.scene)
-    gram(request.scene, [4 * step], step, 16, 0, threads=1)
-    coupled(request.scene, [4 * step], step, 16, 0, threads=1)
-    first_passage_counts(request.scene, 1.0, [4 * step], 1.0, step, 16, 0, threads=1)
+    sampling = Sampling(step, 16, 0, threads=1)
+    gram(request.scene, [4 * step], sampling)
+    coupled(request.scene, [4 * step], sampling)
+    first_passage_counts(request.scene, 1.0, [4 * step], 1.0, sampling)
 
 
 def measure(request):

@@ -21,6 +21,7 @@ from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.kernels.compilation import kernel
 from nonsmooth.paths.kernels.panel import new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK, normals
+from nonsmooth.paths.sampling import Sampling
 
 ROUNDS = 7
 STEP = 0.02
@@ -80,12 +81,8 @@ def contestants(threads):
                 lambda: gram(
                     scene,
                     [horizon / 2, horizon],
-                    STEP,
-                    paths,
-                    1,
-                    threads=threads,
-                    precision=precision,
-                    control=control,
+                    Sampling(STEP, paths, 1, threads=threads, precision=precision),
+                    control,
                 ),
                 paths * steps,
             )
@@ -96,7 +93,11 @@ def contestants(threads):
         # out of reach: every step of every path is done, with its maximum
         return threads * timed(
             lambda: first_passage_counts(
-                FRICTION, 1e9, [STEP * steps / 2, STEP * steps], 1.0, STEP, paths, 1, 0, threads
+                FRICTION,
+                1e9,
+                [STEP * steps / 2, STEP * steps],
+                1.0,
+                Sampling(STEP, paths, 1, threads=threads),
             ),
             paths * steps,
         )

@@ -6,15 +6,18 @@ a standard normal variable and max_{t <= 1} |Xi_p(t)|/gamma to the maximum of |W
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import ndtr, ndtri
 
 from nonsmooth.crossing.brownian import brownian_survival
 from nonsmooth.paths.ensembles import over_blocks
 from nonsmooth.paths.kernels.panel import PEAK, TOTAL_DELTA
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.time_grids import equal_steps
+from nonsmooth.scenes.scene import Scene
 
 
-def scaled_integrals(scene, p, step, paths, seed, threads=None):
+def scaled_integrals(scene: Scene, p: ArrayLike, sampling: Sampling) -> np.ndarray:
     """Simulate Xi_p(1) and max_{t <= 1} |Xi_p(t)|, every p on the same paths.
 
     Parameters
@@ -22,11 +25,8 @@ def scaled_integrals(scene, p, step, paths, seed, threads=None):
     scene : Scene
     p : array_like, shape (k,)
         Increasing scales, "1".
-    step : float
-        Longest time step, "1"; the maximum is that over the steps.
-    paths : int
-    seed : int or tuple
-    threads : int, optional
+    sampling : Sampling
+        The maximum is that over its steps.
 
     Returns
     -------
@@ -42,8 +42,7 @@ def scaled_integrals(scene, p, step, paths, seed, threads=None):
     def reduce(panel, count):
         return np.stack([panel.total[TOTAL_DELTA, :count], panel.data[PEAK, :count]])
 
-    grid = equal_steps(p, step)
-    kept = over_blocks(scene, grid, paths, seed, reduce, 0, threads, "strang", "float32", False)
+    kept = over_blocks(scene, equal_steps(p, sampling.step), sampling, reduce, control=False)
     return np.swapaxes(np.concatenate(kept, axis=2), 0, 1) / np.sqrt(p)[:, None]
 
 

@@ -12,12 +12,13 @@ from scipy import stats
 from nonsmooth.errors import ToleranceError
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.paths import schemes
-from nonsmooth.paths.ensembles import parallel
+from nonsmooth.paths.ensembles import integrals_at, parallel
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.time_loop import march
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
-from nonsmooth.statistics.sampled_gamma2 import integrals
 
 _LEVEL = 0.95
 
@@ -34,7 +35,9 @@ def contact_time(scene):
     return scene.n**-2.0 if diffuses else 1 / scene.n
 
 
-def largest_distances(scene, variable, horizon, step, paths, seed, threads=None):
+def largest_distances(
+    scene: Scene, variable: str, horizon: float, sampling: Sampling
+) -> np.ndarray:
     """Simulate sup_{t <= T} |z_n(t) - z(t)|, z one of the variables of the state, over the steps.
 
     Parameters
@@ -44,26 +47,23 @@ def largest_distances(scene, variable, horizon, step, paths, seed, threads=None)
     variable : {"y", "x"}
     horizon : float
         T, "1".
-    step : float
-        Longest time step, "1".
-    paths : int
-    seed : int or tuple
-    threads : int, optional
+    sampling : Sampling
+        Its precision is not used: the differences are small, and double precision is.
 
     Returns
     -------
     numpy.ndarray, shape (paths,)
     """
     row = STATE[[s.name for s in STATE_VARIABLES].index(variable)]
-    steps = math.ceil(horizon / step)
+    steps = math.ceil(horizon / sampling.step)
     pair = [
-        (one, schemes.coefficients(one, "strang", horizon / steps, "float64"))
+        (one, schemes.coefficients(one, sampling.scheme, horizon / steps, "float64"))
         for one in (scene, scene.with_n(math.inf))
     ]
 
     def run(job):
         block, count = job
-        panels = [new_panel(one, seed, block, "float64") for one, _ in pair]
+        panels = [new_panel(one, sampling.seed, block, "float64") for one, _ in pair]
         largest = np.zeros(count)
         for _ in range(steps):
             for panel, (_, s) in zip(panels, pair, strict=True):
@@ -72,15 +72,15 @@ def largest_distances(scene, variable, horizon, step, paths, seed, threads=None)
             np.maximum(largest, np.abs(difference), out=largest)
         return largest
 
-    return np.concatenate(parallel(run, blocks(0, paths), threads))
+    return np.concatenate(parallel(run, blocks(0, sampling.paths), sampling.threads))
 
 
-def variance_difference(scene, horizon, step, paths, seed, threads=None):
+def variance_difference(scene: Scene, horizon: float, sampling: Sampling) -> tuple[float, float]:
     """Difference of Var D(T) / T between a penalized scene and its limit, on the same paths.
 
     Parameters
     ----------
-    scene, horizon, step, paths, seed, threads
+    scene, horizon, sampling
         As for `largest_distances`.
 
     Returns
@@ -89,14 +89,14 @@ def variance_difference(scene, horizon, step, paths, seed, threads=None):
         The error is the standard error.
     """
     penalized, limit = (
-        integrals(one, [horizon], step, paths, seed, threads=threads, control=False)[0, 0]
+        integrals_at(one, [horizon], sampling, control=False)[0, 0]
         for one in (scene, scene.with_n(math.inf))
     )
     square = (penalized - penalized.mean()) ** 2 - (limit - limit.mean()) ** 2
-    return square.mean() / horizon, square.std(ddof=1) / math.sqrt(paths) / horizon
+    return square.mean() / horizon, square.std(ddof=1) / math.sqrt(sampling.paths) / horizon
 
 
-def growth_difference(scene):
+def gamma2_difference(scene: Scene) -> tuple[float, float]:
     """gamma_n^2 - gamma^2 of dry friction with white noise and g = y, and its error."""
     (value, error), (limit, limit_error) = (
         friction_variance(n, scene.damping) for n in (scene.n, math.inf)

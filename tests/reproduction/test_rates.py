@@ -5,7 +5,8 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from reproduction.rates import contact_time, growth_difference, largest_distances, slope
+from nonsmooth.paths.sampling import Sampling
+from reproduction.rates import contact_time, gamma2_difference, largest_distances, slope
 
 N = np.array([10.0, 30.0, 100.0, 300.0, 1000.0])
 
@@ -38,7 +39,7 @@ def test_too_few_differences():
 
 def test_growth_of_dry_friction_is_of_second_order():
     """gamma_n^2 - gamma^2 ~ 0.173 n^-2."""
-    value, error = growth_difference(ns.Scene("friction", n=1000))
+    value, error = gamma2_difference(ns.Scene("friction", n=1000))
     assert value * 1e6 == pytest.approx(0.1726, abs=1e-3)
     assert error < 1e-5 * value
 
@@ -59,11 +60,11 @@ def test_time_scales():
 
 def test_distance_of_dry_friction_on_paths():
     """Five times n: the distance falls by 5^-1.2 at least, and threads change nothing."""
-    near, far = (
-        largest_distances(ns.Scene("friction", n=n), "y", 1.0, 0.5 / n**2, 300, 1, threads)
-        for n, threads in ((4, 1), (20, 2))
+    near, far, again = (
+        largest_distances(
+            ns.Scene("friction", n=n), "y", 1.0, Sampling(0.5 / n**2, 300, 1, threads=threads)
+        )
+        for n, threads in ((4, 1), (20, 2), (4, 2))
     )
     assert far.mean() < near.mean() * 5**-1.2
-    assert np.array_equal(
-        near, largest_distances(ns.Scene("friction", n=4), "y", 1.0, 0.5 / 16, 300, 1, threads=2)
-    )
+    assert np.array_equal(near, again)

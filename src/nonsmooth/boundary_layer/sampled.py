@@ -17,6 +17,7 @@ from nonsmooth.paths.kernels.compilation import kernel
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks, labelled
 from nonsmooth.paths.resolution import coarse_step
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.paths.time_loop import march, march_pair
 
@@ -129,9 +130,8 @@ def _spread(scene, step, after, seed, threads):
         return panel.total[TOTAL_DELTA, :count].copy()
 
     grid = [(after, step), (after, step)]
-    before, end = over_blocks(
-        scene, grid, _PILOT_PATHS, seed, position, 0, threads, "strang", "float64", False
-    )[0]
+    pilot = Sampling(step, _PILOT_PATHS, seed, threads=threads, precision="float64")
+    before, end = over_blocks(scene, grid, pilot, position, control=False)[0]
     return np.std(end - before)
 
 

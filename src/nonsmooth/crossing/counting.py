@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
 from nonsmooth.checks import require_count, require_positive
 from nonsmooth.errors import ToleranceError
@@ -23,8 +24,10 @@ from nonsmooth.paths.resolution import (
     require_possible,
     require_resolved,
 )
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.paths.time_loop import march
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.thresholds import bounds
 
 _CONFIDENCE = 0.997  # of the pilot's limits of the probability
@@ -43,18 +46,12 @@ DESCRIPTIONS = {
 
 
 def first_passage_counts(
-    scene,
-    threshold,
-    horizons,
-    p,
-    step,
-    paths,
-    seed,
-    first_path=0,
-    threads=None,
-    scheme="strang",
-    precision="float32",
-):
+    scene: Scene,
+    threshold: float | tuple[float, float],
+    horizons: ArrayLike,
+    p: float,
+    sampling: Sampling,
+) -> np.ndarray:
     """Count the paths that cross sqrt(p) times the threshold between the horizons p T.
 
     A path is dropped once it has crossed.
@@ -68,10 +65,8 @@ def first_passage_counts(
         Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem.
-    step : float
-        Longest time step, "1"; it is shortened to divide the intervals of p T.
-    paths, seed, first_path, threads, scheme, precision
-        As for `trajectories.gram`.
+    sampling : Sampling
+        The step is shortened to divide the intervals of p T.
 
     Returns
     -------
@@ -84,13 +79,13 @@ def first_passage_counts(
     """
     levels = np.sqrt(p) * np.array(bounds(threshold))
     grid = [
-        (steps, schemes.coefficients(scene, scheme, h, precision))
-        for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), step)
+        (steps, schemes.coefficients(scene, sampling.scheme, h, sampling.precision))
+        for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), sampling.step)
     ]
 
     def run(job):
         block, lanes = job
-        panel = new_panel(scene, seed, block, precision)
+        panel = new_panel(scene, sampling.seed, block, sampling.precision)
         left = [lanes]
         for steps, s in grid:
             left.append(march(s, panel, left[-1], steps, *levels))
@@ -98,18 +93,25 @@ def first_passage_counts(
         require_finite([panel.total[TOTAL_DELTA, : left[-1]]])
         return -np.diff(left)
 
-    return sum(parallel(run, blocks(first_path, paths), threads))
+    counts = parallel(run, blocks(sampling.first_path, sampling.paths), sampling.threads)
+    return np.asarray(sum(counts))
 
 
-def first_passage_bias(scene, threshold, horizons, p, step, paths, seed, threads=None):
+def first_passage_bias(
+    scene: Scene,
+    threshold: float | tuple[float, float],
+    horizons: ArrayLike,
+    p: float,
+    sampling: Sampling,
+) -> tuple[np.ndarray, np.ndarray]:
     """Measure what halving the time step changes in the crossing probability.
 
     Parameters
     ----------
-    scene, threshold, horizons, p, paths, seed, threads
+    scene, threshold, horizons, p
         As for `first_passage_counts`.
-    step : float
-        The longer of the two steps, "1".
+    sampling : Sampling
+        With the longer of the two steps.
 
     Returns
     -------
@@ -118,7 +120,7 @@ def first_passage_bias(scene, threshold, horizons, p, step, paths, seed, threads
     """
     times = p * np.asarray(horizons, dtype=float)
     levels = np.sqrt(p) * np.array(bounds(threshold))
-    _, passage = coupled(scene, times, step, paths, seed, threads, levels)
+    _, passage = coupled(scene, times, sampling, levels)
     return _bias_of_counts(scene, times, passage)
 
 
@@ -133,17 +135,23 @@ def _bias_of_counts(scene, times, passage):
     return factor * change.mean(axis=0), factor * error
 
 
-def first_passage_shift(scene, threshold, horizon, p, step, paths, seed, threads=None):
+def first_passage_shift(
+    scene: Scene,
+    threshold: float | tuple[float, float],
+    horizon: float,
+    p: float,
+    sampling: Sampling,
+) -> np.ndarray:
     """Measure how halving the time step shifts the first-passage times.
 
     Parameters
     ----------
-    scene, threshold, p, paths, seed, threads
+    scene, threshold, p
         As for `first_passage_counts`.
     horizon : float
         T; paths that have not crossed by p T with both steps are left out.
-    step : float
-        The longer of the two steps, "1".
+    sampling : Sampling
+        With the longer of the two steps.
 
     Returns
     -------
@@ -151,7 +159,7 @@ def first_passage_shift(scene, threshold, horizon, p, step, paths, seed, threads
         Sums over the paths of the powers 0 to 2 of log(time with step / time with step/2).
     """
     levels = np.sqrt(p) * np.array(bounds(threshold))
-    _, (fine, coarse) = coupled(scene, [p * horizon], step, paths, seed, threads, levels)
+    _, (fine, coarse) = coupled(scene, [p * horizon], sampling, levels)
     both = np.isfinite(fine) & np.isfinite(coarse)
     ratio = np.log(coarse[both] / fine[both])
     return np.array([len(ratio), ratio.sum(), np.sum(ratio**2)])
@@ -250,10 +258,8 @@ def sampled_crossing(
     order, allowed = schemes.scheme(scene).weak_order(scene), (1 - SPREAD_SHARE) * tol
 
     def halving(step, paths, label):
-        own = labelled(seed, label)
-        return _Halving(
-            step, *coupled(scene, times, step, paths, own, threads, levels, precision=precision)
-        )
+        own = Sampling(step, paths, labelled(seed, label), threads=threads, precision=precision)
+        return _Halving(step, *coupled(scene, times, own, levels))
 
     def possible(paths, step, crossed, count):
         told = f"W = {crossed[-1] / count:.3g} has an error of {SIGMAS / 2 / np.sqrt(count):.1g}"
@@ -263,20 +269,8 @@ def sampled_crossing(
         """Numbers of crossed paths, and of as many paths as turn out to be wanted."""
         crossed, done = np.zeros(len(horizons), dtype=int), 0
         while done < wanted:
-            crossed = crossed + np.cumsum(
-                first_passage_counts(
-                    scene,
-                    threshold,
-                    horizons,
-                    p,
-                    step,
-                    wanted - done,
-                    seed,
-                    first_path=done,
-                    threads=threads,
-                    precision=precision,
-                )
-            )
+            more = Sampling(step, wanted - done, seed, done, threads, precision=precision)
+            crossed = crossed + np.cumsum(first_passage_counts(scene, threshold, horizons, p, more))
             done = wanted
             if paths is None and _distance(crossed, done) > SPREAD_SHARE * tol:
                 wanted = max(_paths_wanted(crossed, done, tol), done + BLOCK)

@@ -1,9 +1,12 @@
 """Ensembles of paths: blocks of lanes marched in parallel and summed in order."""
 
 import os
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nonsmooth.checks import require_count
 from nonsmooth.errors import SceneError
@@ -11,14 +14,16 @@ from nonsmooth.paths import schemes
 from nonsmooth.paths.control_variate import poisson_slope
 from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.paths.time_loop import march, march_pair
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 _EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
 
 
-def parallel(work, jobs, threads=None):
+def parallel(work: Callable, jobs: Iterable, threads: int | None = None) -> list:
     """Map `work` over `jobs` on `threads` threads (default: all cores); results in order."""
     require_count("threads", threads or os.cpu_count())
     with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
@@ -26,34 +31,16 @@ def parallel(work, jobs, threads=None):
 
 
 def gram(
-    scene,
-    times,
-    step,
-    paths,
-    seed,
-    first_path=0,
-    threads=None,
-    scheme="strang",
-    precision="float32",
-    control=True,
-    parts=1,
-):
-    """Simulate a part of an ensemble and add up what its moments are made of.
+    scene: Scene, times: ArrayLike, sampling: Sampling, control: bool = True, parts: int = 1
+) -> np.ndarray:
+    """Simulate an ensemble, or a part of it, and add up what its moments are made of.
 
     Parameters
     ----------
     scene : Scene
     times : array_like, shape (t,)
         Increasing output times, "1".
-    step : float
-        Longest time step, "1".
-    paths : int
-        Number of paths.
-    seed : int or tuple
-    first_path : int
-        Number of the first path of this part, a multiple of the block size.
-    threads : int, optional
-    scheme, precision : str
+    sampling : Sampling
     control : bool
         Whether to run the control variate, where there is one.
     parts : int
@@ -78,52 +65,60 @@ def gram(
             vector[1:] = delta, delta**2, martingale, martingale**2 - variation
             return vector @ vector.T
 
-    grid = [(parts * steps, h / parts) for steps, h in equal_steps(times, step)]
-    return sum(
-        over_blocks(
-            scene, grid, paths, seed, products, first_path, threads, scheme, precision, control
-        )
-    )
+    grid = [(parts * steps, h / parts) for steps, h in equal_steps(times, sampling.step)]
+    return sum(over_blocks(scene, grid, sampling, products, control))
 
 
-def over_blocks(scene, grid, paths, seed, reduce, first_path, threads, scheme, precision, control):
-    """March every block of paths over a grid of `equal_steps`.
+def over_blocks(
+    scene: Scene, grid: list, sampling: Sampling, reduce: Callable, control: bool = True
+) -> list:
+    """Simulate every block of paths and keep what is wanted of it at the output times.
 
     Parameters
     ----------
+    scene : Scene
     grid : list of (int, float)
+        Number of steps up to each output time and their length, as from `equal_steps`.
+    sampling : Sampling
+        Its step is not used: the grid has the steps.
     reduce : callable
         Takes a block's panel at an output time and the number of its paths, returns an array to
         be kept.
-    scene, paths, seed, first_path, threads, scheme, precision, control
-        As for `gram`.
+    control : bool
+        Whether to run the control variate, where there is one.
 
     Returns
     -------
     list of numpy.ndarray
         One per block, with the output time in front.
+
+    Raises
+    ------
+    SceneError
+        If a parameter is out of range or a path diverges.
     """
     slope = poisson_slope(scene) if control else None
     coefficients = {
-        h: schemes.coefficients(scene, scheme, h, precision, slope) for h in {h for _, h in grid}
+        h: schemes.coefficients(scene, sampling.scheme, h, sampling.precision, slope)
+        for h in {h for _, h in grid}
     }
 
     def run(job):
         block, count = job
-        panel = new_panel(scene, seed, block, precision)
+        panel = new_panel(scene, sampling.seed, block, sampling.precision)
         kept = []
         for steps, h in grid:
             march(coefficients[h], panel, count, steps, *_EVERYWHERE)
             kept.append(reduce(panel, count))
         return np.array(kept)
 
-    results = parallel(run, blocks(first_path, paths), threads)
+    results = parallel(run, blocks(sampling.first_path, sampling.paths), sampling.threads)
     require_finite(results)
     return results
 
 
-def paths_at(scene, times, step, paths, seed, scheme="strang", threads=None):
-    """Simulate paths in double precision and keep them at the output times.
+def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
+    """Simulate paths, always in double precision, and keep them at the output times.
 
     Returns
     -------
@@ -131,37 +126,55 @@ def paths_at(scene, times, step, paths, seed, scheme="strang", threads=None):
         The scene's k state variables and D, time 0 included.
     """
     rows = [row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in scene.state]
+    double = replace(sampling, precision="float64")
 
     def state(panel, count):
         return np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]])
 
-    grid = equal_steps(times, step)
-    kept = over_blocks(scene, grid, paths, seed, state, 0, threads, scheme, "float64", False)
-    start = state(new_panel(scene, seed, 0, "float64"), 1)
+    kept = over_blocks(scene, equal_steps(times, sampling.step), double, state, control=False)
+    start = state(new_panel(scene, sampling.seed, 0, "float64"), 1)
     return np.concatenate(
-        [np.broadcast_to(start, (1, len(start), paths)), np.concatenate(kept, axis=2)]
+        [np.broadcast_to(start, (1, len(start), sampling.paths)), np.concatenate(kept, axis=2)]
     )
 
 
+def integrals_at(
+    scene: Scene, times: ArrayLike, sampling: Sampling, control: bool = True
+) -> np.ndarray:
+    """Simulate D = int_0^t g and its martingale part, and keep them at the output times.
+
+    Parameters
+    ----------
+    scene, times, sampling, control
+        As for `gram`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (t, 3, paths)
+        D, M and <M>; the last two are 0 without a control variate.
+    """
+
+    def totals(panel, count):
+        return panel.total[:, :count].copy()
+
+    kept = over_blocks(scene, equal_steps(times, sampling.step), sampling, totals, control)
+    return np.concatenate(kept, axis=2)
+
+
 def coupled(
-    scene,
-    times,
-    step,
-    paths,
-    seed,
-    threads=None,
-    levels=_EVERYWHERE,
-    scheme="strang",
-    precision="float32",
-):
+    scene: Scene,
+    times: ArrayLike,
+    sampling: Sampling,
+    levels: tuple[float, float] = _EVERYWHERE,
+) -> tuple[np.ndarray, np.ndarray]:
     """Simulate paths with a step and with half of it on the same noise.
 
     Parameters
     ----------
-    scene, times, paths, seed, threads, scheme, precision
+    scene, times
         As for `gram`.
-    step : float
-        The longer of the two steps, "1".
+    sampling : Sampling
+        With the longer of the two steps, and from the first path on.
     levels : (float, float)
         Lower and upper level whose first passage by D is timed.
 
@@ -172,7 +185,8 @@ def coupled(
     passage : numpy.ndarray, shape (2, paths)
         First-passage times with step h/2 and h, inf if there is none.
     """
-    grid = equal_steps(times, step)
+    scheme, precision = sampling.scheme, sampling.precision
+    grid = equal_steps(times, sampling.step)
     pairs = [
         tuple(schemes.coefficients(scene, scheme, length, precision) for length in (h / 2, h))
         for _, h in grid
@@ -180,7 +194,7 @@ def coupled(
 
     def run(job):
         block, count = job
-        panel, other = (new_panel(scene, seed, block, precision) for _ in range(2))
+        panel, other = (new_panel(scene, sampling.seed, block, precision) for _ in range(2))
         passage = np.full((2, count), np.inf)
         products = np.empty((len(grid), 4, 4))
         vector = np.ones((4, count))
@@ -194,12 +208,12 @@ def coupled(
             products[k] = vector @ vector.T
         return products, passage
 
-    results = parallel(run, blocks(0, paths), threads)
+    results = parallel(run, blocks(0, sampling.paths), sampling.threads)
     require_finite([change for change, _ in results])
     return sum(change for change, _ in results), np.hstack([passage for _, passage in results])
 
 
-def require_finite(results):
+def require_finite(results: Iterable) -> None:
     """Refuse results of paths that left every bound.
 
     Raises

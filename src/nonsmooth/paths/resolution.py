@@ -1,14 +1,18 @@
 """How many paths, and how long a time step, a tolerance takes."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths import schemes
 from nonsmooth.paths.ensembles import coupled, gram
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import mean_bias, moments, step_bias
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.scenes.scene import Scene
 
 MOST_STEPS = 1e13  # of all paths together: hours
 
@@ -59,18 +63,22 @@ def refined_step(step, bias, allowed, order):
     return float(step * min(1.0, (allowed / bias) ** (1 / order)))
 
 
-def halved_step_bias(scene, times, step, paths, seed, threads, scheme):
-    """Bias of the mean and of the variance of D by the step, each with its standard error."""
-    chosen = schemes.scheme(scene, scheme)
+def halved_step_bias(scene: Scene, times: ArrayLike, sampling: Sampling) -> dict:
+    """Measure what halving the step changes in the mean and in the variance of D.
+
+    Returns
+    -------
+    dict
+        `mean` and `variance`: the bias by the step of each, over the times, and its standard error.
+    """
+    chosen = schemes.scheme(scene, sampling.scheme)
     order = chosen.weak_order(scene)
     if chosen.coupled:
-        change, _ = coupled(scene, times, step, paths, seed, threads, scheme=scheme)
+        change, _ = coupled(scene, times, sampling)
         return {"mean": mean_bias(change, order), "variance": step_bias(change, order)}
     # independent runs on a grid and on its halves
-    coarse, fine = (
-        moments(gram(scene, times, step, 4 * paths, labelled(seed, k), 0, threads, scheme, parts=k))
-        for k in (1, 2)
-    )
+    more = replace(sampling, paths=4 * sampling.paths)
+    coarse, fine = (moments(gram(scene, times, more.labelled(k), parts=k)) for k in (1, 2))
     factor = 1 / (1 - 2**-order)
     return {
         name: (
@@ -81,16 +89,19 @@ def halved_step_bias(scene, times, step, paths, seed, threads, scheme):
     }
 
 
-def choose_step(scene, times, tol, seed, threads, scheme):
+def choose_step(
+    scene: Scene,
+    times: np.ndarray,
+    tol: float,
+    seed: int | tuple,
+    threads: int | None,
+    scheme: str,
+) -> float:
     """Find the step whose relative bias of the variance is below `tol`, from a coarse pilot."""
     step = min(coarse_step(scene, scheme), float(times[-1]) / 32)
-    found = moments(
-        gram(scene, times, step, PILOT_PATHS, labelled(seed, "pilot"), 0, threads, scheme)
-    )
-    own = labelled(seed, "pilot")
-    bias, error = halved_step_bias(scene, times, step, PILOT_PATHS, own, threads, scheme)[
-        "variance"
-    ]
+    pilot = Sampling(step, PILOT_PATHS, labelled(seed, "pilot"), threads=threads, scheme=scheme)
+    found = moments(gram(scene, times, pilot))
+    bias, error = halved_step_bias(scene, times, pilot)["variance"]
     worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
     return refined_step(step, worst, tol, schemes.scheme(scene, scheme).weak_order(scene))
 

@@ -1,6 +1,7 @@
 """Paths and the moments of their integrals: `simulate`."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -9,7 +10,6 @@ from nonsmooth.checks import require_count, require_increasing, require_positive
 from nonsmooth.errors import SceneError
 from nonsmooth.paths import schemes
 from nonsmooth.paths.ensembles import gram, paths_at
-from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import moments
 from nonsmooth.paths.resolution import (
     PILOT_PATHS,
@@ -18,6 +18,7 @@ from nonsmooth.paths.resolution import (
     require_possible,
     require_resolved,
 )
+from nonsmooth.paths.sampling import Sampling
 
 
 def simulate(
@@ -93,9 +94,10 @@ def simulate(
     require_positive("step", step)
     if chosen:
         require_possible(paths, times[-1] / step, "the variance of int g is sampled", tol)
+    sampling = Sampling(step, paths, seed, threads=threads, scheme=scheme, precision=precision)
     attributes = {"step": step, "paths": paths}
     if keep == "paths":
-        kept = paths_at(scene, times, step, paths, seed, scheme, threads)
+        kept = paths_at(scene, times, sampling)
         return xr.Dataset(
             {
                 name: (("path", "time"), kept[:, i].T)
@@ -104,11 +106,10 @@ def simulate(
             coords={"time": np.concatenate([[0.0], times])},
             attrs=attributes,
         )
-    found = moments(gram(scene, times, step, paths, seed, 0, threads, scheme, precision=precision))
+    found = moments(gram(scene, times, sampling))
     fewer = min(paths, max(PILOT_PATHS, paths // 8))
-    for name, bias in halved_step_bias(
-        scene, times, step, fewer, labelled(seed, "halving"), threads, scheme
-    ).items():
+    halving = replace(sampling.labelled("halving"), paths=fewer, precision="float32")
+    for name, bias in halved_step_bias(scene, times, halving).items():
         found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
     require_resolved(
         step, *(found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))

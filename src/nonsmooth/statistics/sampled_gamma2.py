@@ -4,23 +4,25 @@ Var D(t) = gamma^2 t + const + an exponentially small rest, D(t) = int_0^t g. Th
 two times is therefore free of the constant, which Var D(t) / t is not.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from nonsmooth.paths import schemes
-from nonsmooth.paths.ensembles import coupled, over_blocks
+from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.moments import step_bias
-from nonsmooth.paths.time_grids import equal_steps
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.scenes.scene import Scene
 
 
 @dataclass(frozen=True)
-class Growth:
+class Slopes:
     """Slopes of the mean and of the variance of D between the first and the last of three times.
 
     Attributes
     ----------
-    rate, rate_error : float
+    gamma2, gamma2_error : float
         gamma^2 and its standard error.
     mean, mean_error : float
         Stationary mean of g and its standard error.
@@ -29,8 +31,8 @@ class Growth:
         error: 0 within the error once the scene has forgotten its start and its correlations.
     """
 
-    rate: float
-    rate_error: float
+    gamma2: float
+    gamma2_error: float
     mean: float
     mean_error: float
     settling: float
@@ -39,51 +41,21 @@ class Growth:
     @property
     def settled(self):
         """Whether both halves agree within four standard errors, or to a thousandth."""
-        return abs(self.settling) <= max(4 * self.settling_error, 1e-3 * abs(self.rate))
+        return abs(self.settling) <= max(4 * self.settling_error, 1e-3 * abs(self.gamma2))
 
     def agrees(self, other):
         """Whether the slopes of two samples agree within four standard errors, or a thousandth."""
         return all(
             abs(ours - theirs) <= max(4 * float(np.hypot(error, other_error)), 1e-3 * abs(ours))
             for ours, error, theirs, other_error in (
-                (self.rate, self.rate_error, other.rate, other.rate_error),
+                (self.gamma2, self.gamma2_error, other.gamma2, other.gamma2_error),
                 (self.mean, self.mean_error, other.mean, other.mean_error),
             )
         )
 
 
-def integrals(
-    scene, times, step, paths, seed, first_path=0, threads=None, precision="float32", control=True
-):
-    """Simulate D and its martingale part at a few times.
-
-    Parameters
-    ----------
-    scene, times, step, paths, seed, first_path, threads, precision, control
-        As for `trajectories.gram`.
-
-    Returns
-    -------
-    numpy.ndarray, shape (t, 3, paths)
-        D, M and <M>; the last two are 0 without a control variate.
-    """
-    results = over_blocks(
-        scene,
-        equal_steps(times, step),
-        paths,
-        seed,
-        lambda panel, count: panel.total[:, :count].copy(),
-        first_path,
-        threads,
-        "strang",
-        precision,
-        control,
-    )
-    return np.concatenate(results, axis=2)
-
-
-def growth(sample, times):
-    """Estimate the slopes from a sample of `integrals`.
+def slopes(sample: np.ndarray, times: Sequence[float]) -> Slopes:
+    """Estimate the slopes from a sample of `integrals_at`.
 
     Parameters
     ----------
@@ -92,30 +64,32 @@ def growth(sample, times):
 
     Returns
     -------
-    Growth
+    Slopes
     """
     first, second, whole = (
         _slopes(sample[[i, k]], times[k] - times[i]) for i, k in ((0, 1), (1, 2), (0, 2))
     )
     settling = second[0] - first[0]
-    return Growth(*whole, settling, float(np.hypot(first[1], second[1])))
+    return Slopes(*whole, settling, float(np.hypot(first[1], second[1])))
 
 
-def growth_bias(scene, times, step, paths, seed, threads=None):
+def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tuple[float, float]:
     """Bias of gamma^2 by the time step, as measured by halving it, and its standard error.
 
     Parameters
     ----------
-    scene, times, step, paths, seed, threads
-        As for `integrals`; the slope is from the first to the last time.
+    scene : Scene
+    times : sequence of float
+        The slope is from the first to the last.
+    sampling : Sampling
 
     Returns
     -------
     bias, error : float
         The error is that of two independent variances, which is larger than that of the slope.
     """
-    change, _ = coupled(scene, [times[0], times[-1]], step, paths, seed, threads)
-    bias, error = step_bias(change, schemes.scheme(scene, "strang").weak_order(scene))
+    change, _ = coupled(scene, [times[0], times[-1]], sampling)
+    bias, error = step_bias(change, schemes.scheme(scene, sampling.scheme).weak_order(scene))
     span = times[-1] - times[0]
     return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
 

@@ -14,6 +14,7 @@ from nonsmooth.grids import potential_wells, uniform_refinement
 from nonsmooth.line import eigenfunctions, quadrature
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.paths import schemes
+from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.resolution import (
     MOST_STEPS,
@@ -24,12 +25,13 @@ from nonsmooth.paths.resolution import (
     refined_step,
     require_possible,
 )
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.relaxation import rate_at_infinity
 from nonsmooth.statistics import gamma2_on_grids, moments_on_grids
 from nonsmooth.statistics.gamma2_on_grids import growth_to
-from nonsmooth.statistics.sampled_gamma2 import growth, growth_bias, integrals
+from nonsmooth.statistics.sampled_gamma2 import gamma2_bias, slopes
 
 _DEGREES = (8, 12, 16, 20, 24)
 _EXACT = {1: 1e-10, 2: 1e-6, 3: 2e-4, 4: 3e-3}  # tolerances by the number of state variables
@@ -200,7 +202,8 @@ def _settled_growth(scene, step, paths, seed, threads):
         own = labelled(seed, attempt)
 
         def sampled(scene, paths, own=own, times=times):
-            return growth(integrals(scene, times, step, paths, own, threads=threads), times)
+            sampling = Sampling(step, paths, own, threads=threads)
+            return slopes(integrals_at(scene, times, sampling), times)
 
         scouts = [sampled(other, _SCOUTS) for other in elsewhere] if len(elsewhere) > 1 else []
         forgotten = all(a.agrees(b) for a, b in combinations(scouts, 2))
@@ -210,7 +213,7 @@ def _settled_growth(scene, step, paths, seed, threads):
                 return times, sample
         times = tuple(2 * t for t in times)
     changes = (
-        f"{sample.rate:.3g}, still changing by {sample.settling:.1g}"
+        f"{sample.gamma2:.3g}, still changing by {sample.settling:.1g}"
         if forgotten
         else f"paths from {len(elsewhere)} wells of the potentials still differ"
     )
@@ -231,23 +234,26 @@ def _by_monte_carlo(scene, tol, seed, threads, began):
     for attempt in range(_ATTEMPTS):
         own = labelled(seed, attempt)
         times, sample = _settled_growth(scene, step, paths, own, threads)
-        bias, spread = growth_bias(scene, times, step, fewer, labelled(own, "halving"), threads)
-        error = abs(bias) + float(np.hypot(sample.rate_error, spread))
-        met = abs(bias) + SIGMAS * float(np.hypot(sample.rate_error, spread)) <= tol * sample.rate
-        if sample.rate < 5 * error and (met or attempt > 0):
+        halving = Sampling(step, fewer, labelled(own, "halving"), threads=threads)
+        bias, spread = gamma2_bias(scene, times, halving)
+        error = abs(bias) + float(np.hypot(sample.gamma2_error, spread))
+        met = (
+            abs(bias) + SIGMAS * float(np.hypot(sample.gamma2_error, spread)) <= tol * sample.gamma2
+        )
+        if sample.gamma2 < 5 * error and (met or attempt > 0):
             raise ToleranceError(
-                f"gamma^2 = {sample.rate:.1e} with an error of {error:.1e} may be 0, which it is "
+                f"gamma^2 = {sample.gamma2:.1e} with an error of {error:.1e} may be 0, which it is "
                 "if int_0^t g stays bounded, as for g = y where the displacement is confined; "
                 "choose another observable, such as x"
             )
         if met:
             break
-        allowed = max(tol * sample.rate, error / 2)
-        paths = max(paths, paths_for(math.sqrt(paths) * sample.rate_error, allowed))
+        allowed = max(tol * sample.gamma2, error / 2)
+        paths = max(paths, paths_for(math.sqrt(paths) * sample.gamma2_error, allowed))
         fewer = max(fewer, math.ceil(fewer * (SIGMAS * spread / (_HALVING_SHARE * allowed)) ** 2))
         step = refined_step(step, abs(bias) + spread, _BIAS_SHARE * allowed, order)
-    require(met, sample.rate, error, tol)
-    return Estimate(sample.rate, error, "Monte Carlo", time.perf_counter() - began)
+    require(met, sample.gamma2, error, tol)
+    return Estimate(sample.gamma2, error, "Monte Carlo", time.perf_counter() - began)
 
 
 def variance(scene, times, tol=None, method=None, seed=0, threads=None):

@@ -10,6 +10,7 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.moments import step_bias
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.thresholds import bounds
 
 SCENE = ns.Scene("friction", n=100)
@@ -32,23 +33,26 @@ def test_published_values_at_T_2(p, value, paths):
 
 def test_number_of_threads_and_shards_changes_no_count():
     """One run of two blocks is the sum of two runs of one block."""
-    arguments = (SCENE, 0.6, HORIZONS, 1.0, 0.05)
-    whole = first_passage_counts(*arguments, 2 * BLOCK, 5, threads=2)
-    parts = [first_passage_counts(*arguments, BLOCK, 5, f, threads=1) for f in (0, BLOCK)]
+    arguments = (SCENE, 0.6, HORIZONS, 1.0)
+    whole = first_passage_counts(*arguments, Sampling(0.05, 2 * BLOCK, 5, threads=2))
+    parts = [
+        first_passage_counts(*arguments, Sampling(0.05, BLOCK, 5, first, threads=1))
+        for first in (0, BLOCK)
+    ]
     assert np.array_equal(whole, sum(parts))
 
 
 def test_thresholds_out_of_reach_and_within_every_reach():
     """No path integrates to 50 in two units of time; every path to a tiny threshold."""
-    none = first_passage_counts(SCENE, 50.0, HORIZONS, 1.0, 0.05, 500, 1)
-    every = first_passage_counts(SCENE, 1e-9, HORIZONS, 1.0, 0.05, 500, 1)
+    none = first_passage_counts(SCENE, 50.0, HORIZONS, 1.0, Sampling(0.05, 500, 1))
+    every = first_passage_counts(SCENE, 1e-9, HORIZONS, 1.0, Sampling(0.05, 500, 1))
     assert none.sum() == 0
     assert every.sum() == every[0] == 500
 
 
 def crossed(threshold, scene=SCENE, p=10.0, paths=5_000):
     """Numbers of paths that have crossed by the horizons, of the same paths for all thresholds."""
-    return np.cumsum(first_passage_counts(scene, threshold, HORIZONS, p, 0.05, paths, 8))
+    return np.cumsum(first_passage_counts(scene, threshold, HORIZONS, p, Sampling(0.05, paths, 8)))
 
 
 def test_levels_of_both_sides():
@@ -73,7 +77,8 @@ def test_counts_are_those_of_stored_paths(threshold, scene):
     lower, upper = bounds(threshold)
     outside = (kept["delta"] <= lower) | (kept["delta"] >= upper)
     reached = np.logical_or.accumulate(outside.values, axis=1).sum(axis=0)
-    counts = first_passage_counts(scene, threshold, times, 1.0, step, paths, 6, precision="float64")
+    sampling = Sampling(step, paths, 6, precision="float64")
+    counts = first_passage_counts(scene, threshold, times, 1.0, sampling)
     assert np.array_equal(np.cumsum(counts), reached[1:])
     assert 0.1 * paths < reached[-1] < paths
 
@@ -95,7 +100,8 @@ def test_mirrored_levels_of_an_odd_scene():
 def test_one_level_by_the_reflection_principle():
     """P(max >= b) = erfc(b / (gamma sqrt(2 T))) with b + kappa/sqrt(p) for b, error O(1/p)."""
     p, paths, gamma = 100.0, 40_000, np.sqrt(0.137696412899501)
-    counts = first_passage_counts(SCENE, (-np.inf, 0.6), HORIZONS, p, 0.02, paths, 9)
+    sampling = Sampling(0.02, paths, 9)
+    counts = first_passage_counts(SCENE, (-np.inf, 0.6), HORIZONS, p, sampling)
     estimate, _, _ = proportion(counts.sum(), paths)
     expected = special.erfc((0.6 + 0.2911259630 / np.sqrt(p)) / gamma / np.sqrt(2 * HORIZONS[-1]))
     error = np.sqrt(expected * (1 - expected) / paths)
@@ -107,7 +113,7 @@ def test_one_level_by_the_reflection_principle():
 def test_passage_times_of_two_levels(levels):
     """The earlier of those of each level, bit for bit, for both steps."""
     passages = [
-        coupled(SCENE, [2.0, 10.0], 0.1, 1_500, 10, levels=pair)[1]
+        coupled(SCENE, [2.0, 10.0], Sampling(0.1, 1_500, 10), pair)[1]
         for pair in (levels, (levels[0], np.inf), (-np.inf, levels[1]))
     ]
     assert np.array_equal(passages[0], np.minimum(*passages[1:]))
@@ -154,12 +160,12 @@ def test_distance_to_the_limit_falls_with_p():
 
 def test_halving_shifts_the_passage_times_by_the_bias_of_the_variance():
     """Mean log time shifts by minus the relative bias of the growth rate (h = 0.2: -0.023)."""
-    count, total, square = first_passage_shift(SCENE, 0.6, 20.0, 10.0, 0.2, 20_000, 6)
+    count, total, square = first_passage_shift(SCENE, 0.6, 20.0, 10.0, Sampling(0.2, 20_000, 6))
     mean = total / count
     error = np.sqrt((square / count - mean**2) / count)
     assert count > 19_900
     # the variance's halving at the same step, from independent samples
-    change, _ = coupled(SCENE, [20.0], 0.2, 50_000, 7)
+    change, _ = coupled(SCENE, [20.0], Sampling(0.2, 50_000, 7))
     bias, spread = step_bias(change, np.inf)
     v = float(ns.variance(SCENE, [20.0])["v"][0])
     relative, relative_error = bias[0] / v, spread[0] / v
@@ -210,7 +216,7 @@ def test_divergence_is_an_error():
     """A path that becomes nan must not count as one that never crosses."""
     scene = ns.Scene("friction", potential="-x**4", observable="y", start={"x": 5.0})
     with pytest.raises(SceneError, match="diverged"):
-        first_passage_counts(scene, 5e307, HORIZONS, 10.0, 0.1, 10, 1)
+        first_passage_counts(scene, 5e307, HORIZONS, 10.0, Sampling(0.1, 10, 1))
 
 
 @pytest.mark.parametrize(

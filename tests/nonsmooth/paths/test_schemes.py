@@ -14,6 +14,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.paths import ensembles, moments
 from nonsmooth.paths.kernels.panel import DELTA, ROWS, STATE, WIDTH, X, Y, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import SCHEMES, coefficients, scheme
 from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes import symbols
@@ -160,7 +161,8 @@ class TestOrder:
         """Its drift has the kink: coupled paths at n = 10, steps 0.05 and 0.025."""
         scene, order, error = ns.Scene("friction", n=10), [], []
         for h in (0.05, 0.025):
-            change, _ = ensembles.coupled(scene, [5.0], h, 100_000, 5, scheme="euler_maruyama")
+            sampling = Sampling(h, 100_000, 5, scheme="euler_maruyama")
+            change, _ = ensembles.coupled(scene, [5.0], sampling)
             bias, spread = moments.step_bias(change, 1.0)
             order.append(np.log2(bias[0]))
             error.append(spread[0] / bias[0] / np.log(2))
@@ -175,9 +177,8 @@ class TestOrder:
         exact, paths = float(ns.variance(LIMIT, [HORIZON])["v"][0]), 2_000_000
         relative, error = [], []
         for h in (0.4, 0.2):
-            found = moments.moments(
-                ensembles.gram(LIMIT, [HORIZON], h, paths, 3, scheme="dry_friction")
-            )
+            sampling = Sampling(h, paths, 3, scheme="dry_friction")
+            found = moments.moments(ensembles.gram(LIMIT, [HORIZON], sampling))
             relative.append(found["variance"][0] / exact - 1)
             error.append(found["variance_error"][0] / exact)
         spread = np.hypot(error[0] / relative[0], error[1] / relative[1]) / np.log(2)

@@ -1,5 +1,7 @@
 """Simulation: the same bits however it is run, the right laws, the right limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import integrate, stats
@@ -10,6 +12,7 @@ from nonsmooth.paths.ensembles import coupled, gram, paths_at
 from nonsmooth.paths.kernels.panel import ETA, ZETA, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.moments import moments, step_bias
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import coefficients, on_given_increments
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.paths.time_grids import equal_steps, logarithmic
@@ -22,7 +25,7 @@ FALSE_ALARM = 1e-5
 def test_spelling_of_a_number_changes_no_stream():
     """Damping 1 and 1.0 are the same scene; a start outside the limit's walls is no obstacle."""
     ends = [
-        paths_at(ns.Scene("obstacle", damping=c, start={"x": 2}), [0.5], 0.1, 3, 1)
+        paths_at(ns.Scene("obstacle", damping=c, start={"x": 2}), [0.5], Sampling(0.1, 3, 1))
         for c in (1, 1.0, np.float64(1.0))
     ]
     assert np.array_equal(ends[0], ends[1])
@@ -31,27 +34,28 @@ def test_spelling_of_a_number_changes_no_stream():
 
 def test_number_of_threads_changes_no_bit():
     """One and three threads give identical sums."""
-    runs = [gram(FRICTION, [0.5, 1.0], 0.05, 5 * BLOCK + 7, 9, threads=k) for k in (1, 3)]
+    runs = [gram(FRICTION, [0.5, 1.0], Sampling(0.05, 5 * BLOCK + 7, 9, threads=k)) for k in (1, 3)]
     assert np.array_equal(*runs)
 
 
 def test_shards_are_parts_of_the_whole():
     """Sums of two shards, added in order, are the sums of one run, to the last bit."""
-    whole = gram(FRICTION, [0.5], 0.1, 2 * BLOCK + 40, 3)
+    whole = gram(FRICTION, [0.5], Sampling(0.1, 2 * BLOCK + 40, 3))
     shards = [(0, BLOCK), (BLOCK, BLOCK), (2 * BLOCK, 40)]
-    parts = [gram(FRICTION, [0.5], 0.1, count, 3, first) for first, count in shards]
+    parts = [gram(FRICTION, [0.5], Sampling(0.1, count, 3, first)) for first, count in shards]
     assert np.array_equal(whole, sum(parts))
 
 
 def test_paths_do_not_depend_on_their_neighbours():
     """A block's first paths are the same whether the others are asked for or not."""
-    few, many = (paths_at(FRICTION, [0.5, 1.0], 0.1, count, 3) for count in (5, BLOCK))
+    few, many = (paths_at(FRICTION, [0.5, 1.0], Sampling(0.1, count, 3)) for count in (5, BLOCK))
     assert np.array_equal(few, many[..., :5])
 
 
 def test_streams_differ_between_seeds():
     """No two runs share a sample."""
-    ends = [paths_at(FRICTION, [0.5], 0.1, 10, seed)[-1, 0] for seed in (1, 2, (1, "a"), (1, 0))]
+    seeds = (1, 2, (1, "a"), (1, 0))
+    ends = [paths_at(FRICTION, [0.5], Sampling(0.1, 10, seed))[-1, 0] for seed in seeds]
     assert len(np.unique(ends)) == np.size(ends)
 
 
@@ -107,7 +111,7 @@ def test_obstacle_has_the_gibbs_law_with_twice_the_damping(n):
 def test_monte_carlo_agrees_with_spectral_elements(n, control):
     """V within z standard errors plus the step's bias, jointly over the times."""
     scene, tau = ns.Scene("friction", n=n), np.array([0.1, 1.0, 5.0])
-    sample = moments(gram(scene, tau, 0.02, 40_000, 2, control=control))
+    sample = moments(gram(scene, tau, Sampling(0.02, 40_000, 2), control))
     exact = ns.variance(scene, tau, tol=1e-6)["v"].values
     z = stats.norm.isf(FALSE_ALARM / 2 / len(tau))
     # bias at h = 0.02, T = 10 known by exact quadrature: 1.6e-4 of v/T, its order 1.5 in h
@@ -124,7 +128,8 @@ def test_control_variate_leaves_a_fraction_of_the_error():
     """
     tau = [5.0, 40.0]
     plain, controlled = (
-        moments(gram(FRICTION, tau, 0.05, 20_000, 2, control=control)) for control in (False, True)
+        moments(gram(FRICTION, tau, Sampling(0.05, 20_000, 2), control))
+        for control in (False, True)
     )
     ratio = controlled["variance_error"] / plain["variance_error"]
     assert ratio[0] < 1 / 3
@@ -139,7 +144,7 @@ def test_bias_of_the_step_is_the_one_known_by_quadrature():
     """
     z = stats.norm.isf(FALSE_ALARM / 2)
     for h, bias in ((0.1, 1.43e-3), (0.02, 1.65e-4)):
-        change, _ = coupled(FRICTION, [10.0], h, 200_000, 1)
+        change, _ = coupled(FRICTION, [10.0], Sampling(h, 200_000, 1))
         found, error = step_bias(change, 1.5)
         # the order varies between 1.3 and 1.7 locally: a fifth of 1 - 2^-1.5
         assert abs(found[0] / 10 - bias) < z * error[0] / 10 + 0.2 * bias
@@ -147,8 +152,9 @@ def test_bias_of_the_step_is_the_one_known_by_quadrature():
 
 def test_precision_changes_less_than_the_errors():
     """Both precisions run on the same noise; the variance agrees to 1/200 of its error."""
-    found = moments(gram(FRICTION, [1.0, 10.0], 0.05, 5_000, 2, precision="float64"))
-    other = moments(gram(FRICTION, [1.0, 10.0], 0.05, 5_000, 2))
+    sampling = Sampling(0.05, 5_000, 2, precision="float64")
+    found = moments(gram(FRICTION, [1.0, 10.0], sampling))
+    other = moments(gram(FRICTION, [1.0, 10.0], replace(sampling, precision="float32")))
     difference = np.abs(found["variance"] - other["variance"])
     assert np.any(difference > 0)
     assert np.all(difference <= 5e-3 * other["variance_error"])
@@ -187,7 +193,7 @@ def test_penalty_force_is_what_the_paths_lack(model, n):
     assert scene.state == (("eta", "y") if model == "friction" else ("eta", "y", "x"))
     errors = []
     for h in (0.04, 0.01):
-        path = paths_at(scene, h * np.arange(1, round(4 / h) + 1), h, 200, 6)
+        path = paths_at(scene, h * np.arange(1, round(4 / h) + 1), Sampling(h, 200, 6))
         eta, y = path[:, 0], path[:, 1]
         x = path[:, 2] if model != "friction" else 0 * y
         rate = y if model == "elasto_plastic" else eta - y - (x if model == "obstacle" else 0)
@@ -290,12 +296,12 @@ def test_a_minority_of_diverging_paths_is_seen():
     """A path that leaves every bound is not replaced by a healthy one."""
     scene = ns.Scene("obstacle", n=10, potential="x**2/2", observable="exp(400*(x - 1))")
     with pytest.raises(SceneError, match="diverged"):
-        gram(scene, [5.0], 0.05, BLOCK, 1)
+        gram(scene, [5.0], Sampling(0.05, BLOCK, 1))
 
 
 def test_a_spread_lost_in_the_mean_is_refused():
     """Sums of fourth powers hold sixteen digits."""
-    sums = gram(ns.Scene("friction", observable="y + 1e6"), [10.0], 0.1, BLOCK, 1)
+    sums = gram(ns.Scene("friction", observable="y + 1e6"), [10.0], Sampling(0.1, BLOCK, 1))
     with pytest.raises(SceneError, match="subtract the mean"):
         moments(sums)
 
@@ -322,7 +328,8 @@ def test_bias_of_a_variance_is_not_that_of_the_mean_square():
     """Adding a constant to g changes neither the variance nor its bias."""
     biases = []
     for g in ("y", "y + 3"):
-        change, _ = coupled(ns.Scene("friction", observable=g), [5.0], 0.1, 50_000, (1, "same"))
+        scene = ns.Scene("friction", observable=g)
+        change, _ = coupled(scene, [5.0], Sampling(0.1, 50_000, (1, "same")))
         biases.append(step_bias(change, 1.5))
     (first, error), (second, spread) = biases
     assert abs(first - second)[0] < stats.norm.isf(FALSE_ALARM / 2) * np.hypot(error, spread)[0]
@@ -338,7 +345,7 @@ def test_friction_force_balances_the_forcing(n):
     assert abs(np.sqrt(estimate.value) - 1) < 2 * 0.01 * np.sqrt(
         ns.asymptotic_variance(ns.Scene("friction", n=n, damping=0.01), tol=1e-6).value
     )
-    sample = moments(gram(scene, [20.0, 60.0], 0.05, 20_000, 3))
+    sample = moments(gram(scene, [20.0, 60.0], Sampling(0.05, 20_000, 3)))
     slope = np.diff(sample["variance"])[0] / 40
     allowed = stats.norm.isf(FALSE_ALARM / 2) * np.hypot(*sample["variance_error"]) / 40
     assert abs(slope - estimate.value) < allowed + 0.01

@@ -10,6 +10,7 @@ import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.paths.ensembles import paths_at
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.statistics import invariant_density as density
 from nonsmooth.statistics.invariant_density import bin_averages, closed_form, invariant_density
 
@@ -59,7 +60,7 @@ def test_closed_forms_are_the_public_densities(scene):
 def test_averages_agree_with_a_simulation():
     """Elasto-plastic: chi-square of both variables; each rejects by chance with 1e-5."""
     paths = 4000
-    y, x, _ = paths_at(PLASTIC, [20], 0.01, paths, 3, threads=1)[-1]
+    y, x, _ = paths_at(PLASTIC, [20], Sampling(0.01, paths, 3, threads=1))[-1]
     edges = {"y": np.linspace(-1.6, 1.6, 17), "x": np.linspace(-1.05, 1.05, 15)}
     solved = bin_averages(PLASTIC, edges, 3e-3)
     for name, sample in (("y", y), ("x", x)):

@@ -10,7 +10,9 @@ from numpy.polynomial.legendre import leggauss
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids import tensor_grid
-from nonsmooth.statistics import moments_on_grids, sampled_gamma2
+from nonsmooth.paths.ensembles import integrals_at
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.statistics import moments_on_grids
 
 TAU = np.array([0.0, 0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 100.0, 1000.0])
 SCENES = {
@@ -124,9 +126,8 @@ def test_monte_carlo(solved):
     """Var D at four times; four standard errors, which chance exceeds once in 1300 runs."""
     scene, found = solved
     middle, paths = found.isel(time=slice(1, 5)), 40_000
-    sample = sampled_gamma2.integrals(scene, middle["time"].values, 0.01, paths, 5, control=False)[
-        :, 0
-    ]
+    sampling = Sampling(0.01, paths, 5)
+    sample = integrals_at(scene, middle["time"].values, sampling, control=False)[:, 0]
     squares = (sample - sample.mean(axis=1, keepdims=True)) ** 2
     error = squares.std(axis=1) / np.sqrt(paths)
     # the step of 0.01 biases less than a hundredth of a per cent (METHODS section 6)

@@ -6,6 +6,7 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.ensembles import paths_at
+from nonsmooth.paths.sampling import Sampling
 
 
 def linear(damping, stiffness):
@@ -44,7 +45,7 @@ def test_correlations_decay_at_the_gap():
     )
     gap = ns.spectral_gap(scene, tol=1e-4).value
     times = np.array([2.0, 3.0, 4.0, 5.0])
-    sample = paths_at(scene, times, 0.01, 200_000, 1)[1:, :2]  # y and x
+    sample = paths_at(scene, times, Sampling(0.01, 200_000, 1))[1:, :2]  # y and x
     size = np.abs(sample.mean(axis=2)).sum(axis=1)
     noise = 5 * np.sqrt(2 / 200_000)
     # the slowest mode bounds the decay: |E z_t| <= c e^(-gap t), c from the first time; the

@@ -5,6 +5,7 @@ from functools import partial
 from nonsmooth.paths import schemes
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.moments import step_bias
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.variance import variance
 from reproduction import artifact
@@ -23,7 +24,8 @@ def growth(scene, time, step, paths, seed, threads):
         From an ensemble independent of the shards'.
     """
     scene = Scene(**scene)
-    change, _ = coupled(scene, [time], step, paths, (seed, "growth"), threads)
+    sampling = Sampling(step, paths, (seed, "growth"), threads=threads)
+    change, _ = coupled(scene, [time], sampling)
     bias, error = step_bias(change, schemes.scheme(scene, "strang").weak_order(scene))
     v = variance(scene, [time])["v"].values
     return artifact.dataset(

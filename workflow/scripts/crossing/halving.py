@@ -5,6 +5,7 @@ from functools import partial
 from nonsmooth.crossing.counting import first_passage_shift
 from nonsmooth.errors import SceneError
 from nonsmooth.paths import schemes
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -20,9 +21,8 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
         step h is the change by halving, divided by 1 - 2^-q.
     """
     scene = Scene(**scene)
-    count, total, square = first_passage_shift(
-        scene, threshold, horizon, p, step, paths, (seed, f"halving, p = {p}"), threads
-    )
+    sampling = Sampling(step, paths, (seed, f"halving, p = {p}"), threads=threads)
+    count, total, square = first_passage_shift(scene, threshold, horizon, p, sampling)
     if not count:
         raise SceneError(
             f"no path crosses {threshold} sqrt(p) by {horizon} p at p = {p}; "

@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -20,9 +21,8 @@ def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):
     horizons = horizon / outputs * np.arange(1, outputs + 1)
     first, paths = part
     scene = Scene(**scene)
-    crossed = first_passage_counts(
-        scene, threshold, horizons, p, step, paths, (seed, f"p = {p}"), first, threads
-    )
+    sampling = Sampling(step, paths, (seed, f"p = {p}"), first, threads)
+    crossed = first_passage_counts(scene, threshold, horizons, p, sampling)
     return artifact.dataset(
         "Numbers of paths that cross the threshold",
         f"{paths} paths from number {first} of {scene}, b = {threshold}, p = {p}",

@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from nonsmooth.paths.ensembles import paths_at
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x
 from nonsmooth.statistics.invariant_density import bin_averages
@@ -23,7 +24,8 @@ def densities(scene, tolerances, bins, step, time, paths, seed, threads):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    state = paths_at(scene, [time], step, paths, (seed, "density"), threads=threads)[-1]
+    sampling = Sampling(step, paths, (seed, "density"), threads=threads)
+    state = paths_at(scene, [time], sampling)[-1]
     samples = {name: z for name, z in zip(scene.state, state, strict=False) if name in TITLES}
     edges = {name: _edges(scene, name, z, bins) for name, z in samples.items()}
     solved = bin_averages(scene, edges, tolerances[scene.dimension - 1])

@@ -5,8 +5,10 @@ from functools import partial
 
 import numpy as np
 
+from nonsmooth.paths.ensembles import integrals_at
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import by_formulas
-from nonsmooth.statistics.sampled_gamma2 import growth, growth_bias, integrals
+from nonsmooth.statistics.sampled_gamma2 import gamma2_bias, slopes
 from nonsmooth.statistics.variance import asymptotic_variance
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -49,19 +51,19 @@ def potentials(scenes, tolerance, times, paths, halving_paths, step, seed, threa
         solved = asymptotic_variance(scene, tolerance[scene.dimension - 1], "deterministic")
 
         def sample(scene, paths, label, own=own):
-            return growth(
-                integrals(scene, times, step, paths, (*own, label), threads=threads), times
-            )
+            sampling = Sampling(step, paths, (*own, label), threads=threads)
+            return slopes(integrals_at(scene, times, sampling), times)
 
         found = sample(scene, paths, "growth")
-        bias = growth_bias(scene, times, step, halving_paths, (*own, "halving"), threads)
+        halving = Sampling(step, halving_paths, (*own, "halving"), threads=threads)
+        bias = gamma2_bias(scene, times, halving)
         square = sample(replace(scene, observable=f"({scene.observable})**2"), halving_paths, "g^2")
         spread = square.mean - found.mean**2
         unsure = np.hypot(square.mean_error, 2 * found.mean * found.mean_error) / spread
         time = solved.value / (2 * spread)
         rows.append(
             [
-                *(solved.value, solved.error, found.rate, found.rate_error, *bias),
+                *(solved.value, solved.error, found.gamma2, found.gamma2_error, *bias),
                 *(found.settling, found.settling_error),
                 *(time, time * (unsure + solved.error / solved.value)),
             ]

@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -18,7 +19,8 @@ def simulate(scene, p, step, paths, seed, threads):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    final, maximum = scaled_integrals(scene, p, step, paths, (seed, "limit theorem"), threads)
+    sampling = Sampling(step, paths, (seed, "limit theorem"), threads=threads)
+    final, maximum = scaled_integrals(scene, p, sampling)
     over = ("p", "path")
     return artifact.dataset(
         "Samples of the scaled integral of the observable",

@@ -4,12 +4,13 @@ from functools import partial
 
 import numpy as np
 
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
 from reproduction.rates import (
     contact_time,
-    growth_difference,
+    gamma2_difference,
     largest_distances,
     slope,
     variance_difference,
@@ -55,10 +56,12 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
                     one,
                     entry["variable"],
                     horizon,
-                    factor * min(longest, resolution * contact_time(one)),
-                    paths,
-                    (seed, "rates", name, one.n),
-                    threads,
+                    Sampling(
+                        factor * min(longest, resolution * contact_time(one)),
+                        paths,
+                        (seed, "rates", name, one.n),
+                        threads=threads,
+                    ),
                 )
                 for one in chain
             ]
@@ -66,12 +69,14 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
 
         def differences(factor, chain=chain, name=name):
             if chain[0].is_line:
-                return np.array([growth_difference(one) for one in chain]).T
+                return np.array([gamma2_difference(one) for one in chain]).T
             own = [(seed, "weak rates", name, one.n) for one in chain]
             return np.array(
                 [
                     variance_difference(
-                        one, weak["horizon"], factor * weak["step"], weak["paths"], s, threads
+                        one,
+                        weak["horizon"],
+                        Sampling(factor * weak["step"], weak["paths"], s, threads=threads),
                     )
                     for one, s in zip(chain, own, strict=True)
                 ]

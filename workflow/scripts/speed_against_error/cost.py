@@ -8,6 +8,7 @@ from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.line import eigenfunctions, finite_differences
 from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.variance import asymptotic_variance
 from reproduction.jobs import produce
@@ -116,9 +117,8 @@ def cost(paths, horizons, p, n, names, scenes, step, least, tolerance, paper_sch
 
 
 def _simulated(scene, horizon, step, paths, seed, scheme="strang", control=False, threads=1):
-    sums = gram(
-        scene, [horizon], step, paths, seed, threads=threads, scheme=scheme, control=control
-    )
+    sampling = Sampling(step, paths, seed, threads=threads, scheme=scheme)
+    sums = gram(scene, [horizon], sampling, control)
     return sums[0, 2, 2]
 
 
@@ -132,7 +132,8 @@ def _marched(scene, horizon, size):
 
 def _counted(scene, p, step, paths, seed):
     # out of reach: every path is followed to the end
-    return first_passage_counts(scene, 1e6, [2.0], p, step, paths, seed, threads=1)[0]
+    sampling = Sampling(step, paths, seed, threads=1)
+    return first_passage_counts(scene, 1e6, [2.0], p, sampling)[0]
 
 
 def _inverted(scene, p):

@@ -11,6 +11,7 @@ from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.kinetic.case_modes import first_passage
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
@@ -77,7 +78,8 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
 
 def _counted(scene, threshold, horizon, p, step, paths, seed):
     own = labelled(seed, f"{p:g} {step:g} {paths}")
-    crossed = first_passage_counts(scene, threshold, [horizon], p, step, paths, own, threads=1)
+    sampling = Sampling(step, paths, own, threads=1)
+    crossed = first_passage_counts(scene, threshold, [horizon], p, sampling)
     return crossed[0] / paths
 
 

@@ -1,10 +1,11 @@
 """gamma^2 of every scene, deterministically and by Monte Carlo: error against time."""
 
 from nonsmooth.line import eigenfunctions
+from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.sampled_gamma2 import growth as slope
-from nonsmooth.statistics.sampled_gamma2 import integrals
+from nonsmooth.statistics.sampled_gamma2 import slopes
 from nonsmooth.statistics.variance import asymptotic_variance
 from reproduction.jobs import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
@@ -72,7 +73,8 @@ def _solved(scene, tol, unit):
 
 def _sampled(scene, times, step, paths, unit, seed):
     own = labelled(seed, f"growth {paths}")
-    return slope(integrals(scene, times, step, paths, own, threads=1), times).rate / unit
+    sample = integrals_at(scene, times, Sampling(step, paths, own, threads=1))
+    return slopes(sample, times).gamma2 / unit
 
 
 if __name__ == "__main__":

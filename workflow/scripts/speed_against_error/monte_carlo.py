@@ -9,6 +9,7 @@ from nonsmooth.paths import schemes
 from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import moments
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.variance import variance
 from reproduction.jobs import produce
@@ -87,16 +88,8 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
 
 def sampled(scene, horizon, step, paths, scheme, control, seed):
     """Estimate the variance of Delta(T), whose mean is 0, over T."""
-    sums = gram(
-        scene,
-        [horizon],
-        step,
-        paths,
-        labelled(seed, f"{scheme} {step:g} {paths}"),
-        threads=1,
-        scheme=scheme,
-        control=control,
-    )
+    own = labelled(seed, f"{scheme} {step:g} {paths}")
+    sums = gram(scene, [horizon], Sampling(step, paths, own, threads=1, scheme=scheme), control)
     return moments(sums)["variance"][0] / horizon
 
 

@@ -10,6 +10,7 @@ from nonsmooth.crossing.counting import (
     first_passage_bias,
     first_passage_counts,
 )
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -26,19 +27,10 @@ def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, 
     """
     horizons = horizon / outputs * np.arange(1, outputs + 1)
     scene = Scene(**scene)
-    crossed = first_passage_counts(
-        scene, threshold, horizons, p, step, paths, (seed, f"sweep, p = {p}"), threads=threads
-    )
-    bias, bias_error = first_passage_bias(
-        scene,
-        threshold,
-        horizons,
-        p,
-        step,
-        halving_paths,
-        (seed, f"sweep, halving, p = {p}"),
-        threads,
-    )
+    sampling = Sampling(step, paths, (seed, f"sweep, p = {p}"), threads=threads)
+    halving = Sampling(step, halving_paths, (seed, f"sweep, halving, p = {p}"), threads=threads)
+    crossed = first_passage_counts(scene, threshold, horizons, p, sampling)
+    bias, bias_error = first_passage_bias(scene, threshold, horizons, p, halving)
     estimate = crossing_estimate(np.cumsum(crossed), paths)
     return artifact.dataset(
         "Threshold crossing probability by Monte Carlo",

@@ -2,8 +2,10 @@
 
 from functools import partial
 
+from nonsmooth.paths.ensembles import integrals_at
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.sampled_gamma2 import growth, growth_bias, integrals
+from nonsmooth.statistics.sampled_gamma2 import gamma2_bias, slopes
 from reproduction import artifact
 from reproduction.jobs import produce
 
@@ -16,17 +18,17 @@ def variance(scene, times, step, paths, halving_paths, seed, threads):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    found = growth(integrals(scene, times, step, paths, (seed, "sweep"), threads=threads), times)
-    bias, bias_error = growth_bias(
-        scene, times, step, halving_paths, (seed, "sweep, halving"), threads
-    )
+    sampling = Sampling(step, paths, (seed, "sweep"), threads=threads)
+    halving = Sampling(step, halving_paths, (seed, "sweep, halving"), threads=threads)
+    found = slopes(integrals_at(scene, times, sampling), times)
+    bias, bias_error = gamma2_bias(scene, times, halving)
     return artifact.dataset(
         "Growth rate of the variance of the integrated observable by Monte Carlo",
         f"{paths} paths of {scene}, from t = {times[0]:g} to {times[-1]:g}",
         {},
         {
-            "gamma2": ((), found.rate, "growth rate of the variance of int_0^t g"),
-            "gamma2_error": ((), found.rate_error, "standard error of the growth rate"),
+            "gamma2": ((), found.gamma2, "growth rate of the variance of int_0^t g"),
+            "gamma2_error": ((), found.gamma2_error, "standard error of the growth rate"),
             "bias": ((), bias, "bias of the growth rate by the time step"),
             "bias_error": ((), bias_error, "standard error of the bias"),
             "settling": ((), found.settling, "growth rate of the second half less the first's"),

@@ -5,6 +5,7 @@ from functools import partial
 from nonsmooth.paths import schemes, time_grids
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.moments import step_bias
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -21,7 +22,7 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
     """
     scene = Scene(**scene)
     tau = time_grids.logarithmic(first_time, horizon, points)
-    change, _ = coupled(scene, tau, step, paths, (seed, "halving"), threads)
+    change, _ = coupled(scene, tau, Sampling(step, paths, (seed, "halving"), threads=threads))
     bias, error = step_bias(change, schemes.scheme(scene, "strang").weak_order(scene))
     return artifact.dataset(
         "Bias of the time step in the variance of the integrated observable",

@@ -4,6 +4,7 @@ from functools import partial
 
 from nonsmooth.paths import time_grids
 from nonsmooth.paths.ensembles import gram
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -26,7 +27,7 @@ def shard(scene, first_time, horizon, points, step, part, seed, threads):
         {
             "gram": (
                 ("time", "row", "column"),
-                gram(scene, tau, step, paths, seed, first, threads),
+                gram(scene, tau, Sampling(step, paths, seed, first, threads)),
                 "sums of the products of (1, D, D^2, M, M^2 - <M>)",
             )
         },
