@@ -42,7 +42,7 @@ peers:
 
 # measures anew, on an idle machine, and refreshes the copies in docs/
 diagrams: env
-	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_growth measure_pathwise measure_cost -- speed_against_error
+	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_gamma2 measure_pathwise measure_cost -- speed_against_error
 	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
 
 env: $(VENV)/installed

@@ -37,7 +37,7 @@ wildcard_constraints:
     limit="[0-9.e+-]+",
     shard="[0-9]+",
     scene="[a-z0-9_]+",
-    diagram="[a-z_]+",
+    diagram="[a-z0-9_]+",
 
 
 rule all:
@@ -45,6 +45,7 @@ rule all:
         PAPER,
 
 
+include: "workflow/rules/common.smk"
 include: "workflow/rules/scenes.smk"
 include: "workflow/rules/rheology.smk"
 include: "workflow/rules/trajectories.smk"
@@ -52,7 +53,7 @@ include: "workflow/rules/variance.smk"
 include: "workflow/rules/crossing.smk"
 include: "workflow/rules/finite_p.smk"
 include: "workflow/rules/convergence.smk"
-include: "workflow/rules/growth.smk"
+include: "workflow/rules/gamma2.smk"
 include: "workflow/rules/sweep.smk"
 include: "workflow/rules/theorems.smk"
 include: "workflow/rules/errata.smk"
@@ -63,3 +64,7 @@ include: "workflow/rules/hard_cases.smk"
 include: "workflow/rules/rates.smk"
 include: "workflow/rules/paper.smk"
 include: "workflow/rules/speed_against_error.smk"
+
+
+for job in workflow.rules:
+    complete(job)

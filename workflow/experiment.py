@@ -43,25 +43,25 @@ def check(config):
                 f"integer, so that the mesh and the domain can be halved; use {nodes // 8 * 8 + 1}"
             )
     _check_times(config["variance"])
-    for key, topic in (("sweep.variance", "sweep"), ("growth.potentials", "growth")):
+    for key, topic in (("sweep.variance", "sweep"), ("gamma2.potentials", "gamma2")):
         times = config[topic][key.split(".")[1]]["times"]
         if sorted(set(times)) != times:
             raise ConfigError(f"config: '{key}.times' = {times} must increase; sort them")
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
-    for parameters in config["growth"]["potentials"]["scenes"]:
+    for parameters in config["gamma2"]["potentials"]["scenes"]:
         by_formulas(parameters)
     _check_theorems(config["theorems"])
     lists = {
         "sweep.simulated": config["sweep"]["simulated"],
-        "growth.scenes": config["growth"]["scenes"],
+        "gamma2.scenes": config["gamma2"]["scenes"],
         "density.scenes": config["density"]["scenes"],
         "limit_theorem.scenes": config["limit_theorem"]["scenes"],
         "theorems.ergodicity.scenes": config["theorems"]["ergodicity"]["scenes"],
     }
     for key, names in lists.items():
         # table 5 and figure 8 compare with the simulations
-        simulated = key in ("growth.scenes", "limit_theorem.scenes")
+        simulated = key in ("gamma2.scenes", "limit_theorem.scenes")
         choice = swept(config) if simulated else config["sweep"]["scenes"]
         for name in names:
             if name not in choice:

@@ -12,8 +12,6 @@ from pathlib import Path
 from nonsmooth.errors import NonsmoothError
 from reproduction import artifact
 
-MODULES = "modules"  # the named input that lists source files rather than data
-
 
 @contextmanager
 def job(log):
@@ -43,14 +41,22 @@ def job(log):
 
 
 def inputs(task):
-    """Read the artifacts among a task's inputs: name -> dataset or list of datasets."""
+    """Read the artifacts among a task's inputs: name -> dataset or list of datasets.
+
+    Other inputs, such as source files, are what the script itself reads.
+    """
     return {
         name: artifact.read(paths)
         if isinstance(paths, str)
         else [artifact.read(path) for path in paths]
         for name, paths in task.input.items()
-        if name != MODULES
+        if _are_artifacts(paths)
     }
+
+
+def _are_artifacts(paths):
+    every = [paths] if isinstance(paths, str) else paths
+    return all(Path(path).suffix == ".nc" for path in every)
 
 
 def produce(compute, task):

@@ -67,7 +67,7 @@ def test_contradictions_fail(changes, message):
         deviations(*three_methods(**changes))
 
 
-def crossings(bias=5e-4, bias_error=4e-4, growth=1e-3):
+def crossings(bias=5e-4, bias_error=4e-4, gamma2=1e-3):
     """Artifacts of figure 2b for p = 10 and 1000."""
     horizon = {"horizon": [1.0, 2.0]}
     run = {
@@ -78,7 +78,7 @@ def crossings(bias=5e-4, bias_error=4e-4, growth=1e-3):
         "bias_error": bias_error,
     }
     limit = xr.Dataset({"probability": ("horizon", [0.21, 0.52])}, coords=horizon)
-    rate = xr.Dataset({"bias": growth, "bias_error": 2e-4})
+    rate = xr.Dataset({"bias": gamma2, "bias_error": 2e-4})
     runs = [xr.Dataset(run, coords=horizon | {"p": p}) for p in (1000.0, 10.0)]
     return runs, limit, rate
 
@@ -93,8 +93,8 @@ def test_small_bias_passes_and_is_sorted_by_p():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"growth": 4e-3}, "not below the standard error"),
-        ({"bias": 8e-3, "growth": 1.5e-3}, "contradict"),
+        ({"gamma2": 4e-3}, "not below the standard error"),
+        ({"bias": 8e-3, "gamma2": 1.5e-3}, "contradict"),
         ({"bias": -8e-3}, "contradict"),
     ],
 )
@@ -209,7 +209,7 @@ def exceedances(bias=1e-3, bias_error=1e-3):
                 coords=duration | {"limit": limit},
             )
         )
-    constants = {"gamma2": 0.25, "gamma2_error": 1e-3, "length": 0.3, "length_error": 0.02}
+    constants = {"gamma2": 0.25, "gamma2_error": 1e-3, "kappa": 0.3, "kappa_error": 0.02}
     return xr.Dataset(constants), runs
 
 

@@ -165,7 +165,7 @@ def test_a_new_limit_of_the_deformation_is_simulated_alone(finished):
 
 
 def test_gamma_does_not_rerun_the_samples_of_the_limit_theorem(finished):
-    """growth.py gives gamma^2; the samples are divided by it afterwards."""
+    """sampled_gamma2.py gives gamma^2; the samples are divided by it afterwards."""
     with open(finished.folder / "src/nonsmooth/statistics/sampled_gamma2.py", "a") as file:
         file.write("# changed\n")
     jobs = finished.jobs()

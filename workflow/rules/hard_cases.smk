@@ -2,39 +2,20 @@
 
 
 rule examine_hard_cases:
-    input:
-        modules=sources("workflow/scripts/hard_cases/examine.py"),
+    """Try the nasty cases"""
     output:
-        ensure(f"{RESULTS}/hard_cases/outcomes.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/hard_cases/examine.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/hard_cases/examine.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 2
+        "<results>/hard_cases/outcomes.nc",
     params:
-        paths=lookup(dpath="hard_cases/paths", within=config),
-    message:
-        "Try the nasty cases"
+        **settings("hard_cases", "paths"),
     script:
         "../scripts/hard_cases/examine.py"
 
 
 rule hard_cases:
+    """Typeset the table of hard cases"""
     input:
         outcomes=rules.examine_hard_cases.output[0],
-        modules=sources("workflow/scripts/hard_cases/table_hard_cases.py"),
     output:
-        multiext(f"{RESULTS}/tables/table_hard_cases", ".csv", ".tex", ".typ"),
-    log:
-        f"{RESULTS}/logs/tables/table_hard_cases.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/tables/table_hard_cases.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
-    message:
-        "Typeset the table of hard cases"
+        table("table_hard_cases"),
     script:
         "../scripts/hard_cases/table_hard_cases.py"

@@ -12,22 +12,16 @@ TABLES = [
 
 rule figures:
     input:
-        expand(
-            "{results}/figures/{figure}.{ext}", results=RESULTS, figure=FIGURES, ext=["pdf", "png"]
-        ),
+        expand("<results>/figures/{figure}.{ext}", figure=FIGURES, ext=["pdf", "png"]),
 
 
 rule tables:
     input:
-        expand(
-            "{results}/tables/{table}.{ext}",
-            results=RESULTS,
-            table=TABLES,
-            ext=["csv", "tex", "typ"],
-        ),
+        expand("<results>/tables/{table}.{ext}", table=TABLES, ext=["csv", "tex", "typ"]),
 
 
 rule values:
+    """Collect the numbers that the text quotes"""
     input:
         spectral=rules.variance_spectral.output[0],
         monte_carlo=rules.variance_monte_carlo.output[0],
@@ -44,56 +38,38 @@ rule values:
         deformation=rules.check_plasticity.output[0],
         deformation_variance=rules.plasticity_variance.output[0],
         rates=rules.measure_rates.output[0],
-        modules=[*sources("workflow/scripts/paper/values.py"), "paper/printed.yaml"],
+        printed="paper/printed.yaml",
     output:
-        ensure(f"{RESULTS}/paper/values.json", non_empty=True),
-    log:
-        f"{RESULTS}/logs/paper/values.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/paper/values.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
+        "<results>/paper/values.json",
     params:
-        variance=lookup(dpath="variance", within=config),
-        sweep=lookup(dpath="crossing", within=config),
-        finite_p=lookup(dpath="finite_p", within=config),
-        horizon=lookup(dpath="convergence/horizon", within=config),
-        scheme=lookup(dpath="convergence/finite_difference", within=config),
-        trajectories=lookup(dpath="trajectories", within=config),
-        scenes=lookup(dpath="sweep", within=config),
-        theorems=lookup(dpath="theorems", within=config),
-        density=lookup(dpath="density", within=config),
-        limit_theorem=lookup(dpath="limit_theorem", within=config),
-        plasticity=lookup(dpath="plasticity", within=config),
-        limits=lookup(dpath="rates", within=config),
-        seed=lookup(dpath="seed", within=config),
-    message:
-        "Collect the numbers that the text quotes"
+        variance=config["variance"],
+        sweep=config["crossing"],
+        finite_p=config["finite_p"],
+        horizon=config["convergence"]["horizon"],
+        scheme=config["convergence"]["finite_difference"],
+        trajectories=config["trajectories"],
+        scenes=config["sweep"],
+        theorems=config["theorems"],
+        density=config["density"],
+        limit_theorem=config["limit_theorem"],
+        plasticity=config["plasticity"],
+        limits=config["rates"],
+        seed=config["seed"],
     script:
         "../scripts/paper/values.py"
 
 
 rule paper:
+    """Typeset the paper"""
     input:
         figures=rules.figures.input,
         tables=rules.tables.input,
         values=rules.values.output[0],
         template="paper/paper.typ",
         recorded=["docs/speed_pde.pdf", "docs/speed_crossing.pdf"],
-        modules=sources("workflow/scripts/paper/typeset.py"),
     output:
-        report(ensure(PAPER, non_empty=True), caption="../report/paper.rst", category="Paper"),
-    log:
-        f"{RESULTS}/logs/paper/paper.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/paper/paper.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
+        report(PAPER, caption="../report/paper.rst", category="Paper"),
     params:
         results=subpath(input.values, ancestor=2),
-    message:
-        "Typeset the paper"
     script:
         "../scripts/paper/typeset.py"

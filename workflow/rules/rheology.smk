@@ -2,22 +2,8 @@
 
 
 rule figure_1:
-    input:
-        modules=sources("workflow/scripts/rheology/figure_1.py"),
+    """Draw figure 1, the rheological models"""
     output:
-        report(
-            multiext(f"{RESULTS}/figures/figure_1", ".pdf", ".png"),
-            caption="../report/figure_1.rst",
-            category="Figures",
-        ),
-    log:
-        f"{RESULTS}/logs/figures/figure_1.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/figure_1.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
-    message:
-        "Draw figure 1, the rheological models"
+        figure("figure_1"),
     script:
         "../scripts/rheology/figure_1.py"

@@ -4,195 +4,122 @@
 
 SPEED = config["speed_against_error"]
 # what is drawn against what
-AXES = {diagram: {"x": "seconds", "y": "error"} for diagram in ("pde", "monte_carlo", "crossing")}
-AXES |= {
-    "growth": {"x": "seconds", "y": "error"},
-    "pathwise": {"x": "size", "y": "error"},
-    "cost": {"x": "size", "y": "seconds"},
-}
-PEERS = sorted(str(path) for path in Path("benchmarks/peers").glob("*.py"))
-# python of the peers' environment, if there is one
+AXES = {diagram: {"x": "seconds", "y": "error"} for diagram in SPEED["diagrams"]}
+AXES |= {"pathwise": {"x": "size", "y": "error"}, "cost": {"x": "size", "y": "seconds"}}
+# the peers' sources, and the python of their environment if there is one
+PEERS = sorted(map(str, Path("benchmarks/peers").glob("*.py")))
 PEERS_PYTHON = SPEED["peers"] if Path(SPEED["peers"]).exists() else None
 
 
 rule measure_pde:
+    """Measure solvers for the variance"""
     input:
-        modules=sources("workflow/scripts/speed_against_error/pde.py") + PEERS,
+        peers=PEERS,
     output:
-        ensure(f"{RESULTS}/speed_against_error/pde.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/speed_against_error/pde.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/speed_against_error/pde.tsv"
-    conda:
-        "../envs/environment.yaml"
+        "<results>/speed_against_error/pde.nc",
     threads: workflow.cores
     params:
         **SPEED["pde"],
         rounds=SPEED["rounds"],
         python=PEERS_PYTHON,
-    message:
-        "Measure solvers for the variance"
     script:
         "../scripts/speed_against_error/pde.py"
 
 
 rule measure_monte_carlo:
+    """Measure schemes of Monte Carlo"""
     input:
-        modules=sources("workflow/scripts/speed_against_error/monte_carlo.py") + PEERS,
+        peers=PEERS,
     output:
-        ensure(f"{RESULTS}/speed_against_error/monte_carlo.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/speed_against_error/monte_carlo.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/speed_against_error/monte_carlo.tsv"
-    conda:
-        "../envs/environment.yaml"
+        "<results>/speed_against_error/monte_carlo.nc",
     threads: workflow.cores
     params:
         **SPEED["monte_carlo"],
         rounds=SPEED["rounds"],
         python=PEERS_PYTHON,
-    message:
-        "Measure schemes of Monte Carlo"
     script:
         "../scripts/speed_against_error/monte_carlo.py"
 
 
 rule measure_crossing:
-    input:
-        modules=sources("workflow/scripts/speed_against_error/crossing.py"),
+    """Measure methods for crossing probabilities"""
     output:
-        ensure(f"{RESULTS}/speed_against_error/crossing.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/speed_against_error/crossing.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/speed_against_error/crossing.tsv"
-    conda:
-        "../envs/environment.yaml"
+        "<results>/speed_against_error/crossing.nc",
     threads: workflow.cores
     params:
         **SPEED["crossing"],
         rounds=SPEED["rounds"],
-    message:
-        "Measure methods for crossing probabilities"
     script:
         "../scripts/speed_against_error/crossing.py"
 
 
-rule measure_growth:
+rule measure_gamma2:
+    """Measure gamma^2 of every scene"""
     input:
-        solved=expand(
-            "{results}/growth/{scene}.nc", results=RESULTS, scene=config["growth"]["scenes"]
-        ),
-        modules=sources("workflow/scripts/speed_against_error/growth.py"),
+        solved=rules.table_5.input.solved,
     output:
-        ensure(f"{RESULTS}/speed_against_error/growth.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/speed_against_error/growth.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/speed_against_error/growth.tsv"
-    conda:
-        "../envs/environment.yaml"
+        "<results>/speed_against_error/gamma2.nc",
     threads: workflow.cores
     params:
-        **SPEED["growth"],
-        names=lookup(dpath="growth/scenes", within=config),
-        scenes=lookup(dpath="sweep/scenes", within=config),
-    message:
-        "Measure gamma^2 of every scene"
+        **SPEED["gamma2"],
+        **settings("gamma2", names="scenes"),
+        **settings("sweep", "scenes"),
     script:
-        "../scripts/speed_against_error/growth.py"
+        "../scripts/speed_against_error/gamma2.py"
 
 
 rule measure_pathwise:
-    input:
-        modules=sources("workflow/scripts/speed_against_error/pathwise.py"),
+    """Measure strong errors"""
     output:
-        ensure(f"{RESULTS}/speed_against_error/pathwise.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/speed_against_error/pathwise.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/speed_against_error/pathwise.tsv"
-    conda:
-        "../envs/environment.yaml"
+        "<results>/speed_against_error/pathwise.nc",
     threads: workflow.cores
     params:
         **SPEED["pathwise"],
         rounds=SPEED["rounds"],
-    message:
-        "Measure strong errors"
     script:
         "../scripts/speed_against_error/pathwise.py"
 
 
 rule measure_cost:
-    input:
-        modules=sources("workflow/scripts/speed_against_error/cost.py"),
+    """Measure how the time grows"""
     output:
-        ensure(f"{RESULTS}/speed_against_error/cost.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/speed_against_error/cost.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/speed_against_error/cost.tsv"
-    conda:
-        "../envs/environment.yaml"
+        "<results>/speed_against_error/cost.nc",
     threads: workflow.cores
     params:
         **SPEED["cost"],
-        scenes=lookup(dpath="sweep/scenes", within=config),
+        **settings("sweep", "scenes"),
         rounds=SPEED["rounds"],
-    message:
-        "Measure how the time grows"
     script:
         "../scripts/speed_against_error/cost.py"
 
 
 rule figure_speed:
+    """Draw the work-precision diagram {wildcards.diagram}"""
     input:
-        measurements=f"{RESULTS}/speed_against_error/{{diagram}}.nc",
-        modules=sources("workflow/scripts/speed_against_error/figure.py"),
+        measurements="<results>/speed_against_error/{diagram}.nc",
     output:
-        multiext(f"{RESULTS}/figures/speed_{{diagram}}", ".pdf", ".png"),
-    log:
-        f"{RESULTS}/logs/figures/speed_{{diagram}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/speed_{{diagram}}.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
+        multiext("<results>/figures/speed_{diagram}", ".pdf", ".png"),
     params:
         x=lambda wildcards: AXES[wildcards.diagram]["x"],
         y=lambda wildcards: AXES[wildcards.diagram]["y"],
-    message:
-        "Draw the work-precision diagram {wildcards.diagram}"
     script:
         "../scripts/speed_against_error/figure.py"
 
 
 rule table_speed:
+    """Typeset the measurements {wildcards.diagram}"""
     input:
-        measurements=f"{RESULTS}/speed_against_error/{{diagram}}.nc",
-        modules=sources("workflow/scripts/speed_against_error/table.py"),
+        measurements=rules.figure_speed.input.measurements,
     output:
-        multiext(f"{RESULTS}/tables/speed_{{diagram}}", ".csv", ".tex", ".typ"),
-    log:
-        f"{RESULTS}/logs/tables/speed_{{diagram}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/tables/speed_{{diagram}}.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
+        table("speed_{diagram}"),
     params:
-        x=lambda wildcards: AXES[wildcards.diagram]["x"],
-        y=lambda wildcards: AXES[wildcards.diagram]["y"],
-    message:
-        "Typeset the measurements {wildcards.diagram}"
+        x=rules.figure_speed.params.x,
+        y=rules.figure_speed.params.y,
     script:
         "../scripts/speed_against_error/table.py"
 
 
 rule speed_against_error:
     input:
-        expand("{results}/figures/speed_{diagram}.pdf", results=RESULTS, diagram=SPEED["diagrams"]),
-        expand("{results}/tables/speed_{diagram}.csv", results=RESULTS, diagram=SPEED["diagrams"]),
+        expand("<results>/figures/speed_{diagram}.pdf", diagram=SPEED["diagrams"]),
+        expand("<results>/tables/speed_{diagram}.csv", diagram=SPEED["diagrams"]),

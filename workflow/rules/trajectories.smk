@@ -2,97 +2,44 @@
 
 
 rule trajectories:
-    input:
-        modules=sources("workflow/scripts/trajectories/simulate.py"),
+    """Simulate the {wildcards.model} trajectories"""
     output:
-        ensure(f"{RESULTS}/trajectories/{{model}}.nc", non_empty=True),
-    log:
-        f"{RESULTS}/logs/trajectories/{{model}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/trajectories/{{model}}.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
+        "<results>/trajectories/{model}.nc",
     params:
+        **settings("trajectories", "n", "horizon", "step", "outputs"),
+        **settings("trajectories/models/{model}", "potential", "damping", "path"),
         model="{model}",
-        potential=lookup(dpath="trajectories/models/{model}/potential", within=config),
-        damping=lookup(dpath="trajectories/models/{model}/damping", within=config),
-        path=lookup(dpath="trajectories/models/{model}/path", within=config),
-        n=lookup(dpath="trajectories/n", within=config),
-        horizon=lookup(dpath="trajectories/horizon", within=config),
-        step=lookup(dpath="trajectories/step", within=config),
-        outputs=lookup(dpath="trajectories/outputs", within=config),
-        seed=lookup(dpath="seed", within=config),
-    message:
-        "Simulate the {wildcards.model} trajectories"
+        seed=config["seed"],
     script:
         "../scripts/trajectories/simulate.py"
 
 
 rule figure_3:
     input:
-        trajectories=f"{RESULTS}/trajectories/elasto_plastic.nc",
-        modules=sources("workflow/scripts/trajectories/figure_3.py"),
+        trajectories="<results>/trajectories/elasto_plastic.nc",
     output:
-        report(
-            multiext(f"{RESULTS}/figures/figure_3", ".pdf", ".png"),
-            caption="../report/trajectories.rst",
-            category="Figures",
-        ),
-    log:
-        f"{RESULTS}/logs/figures/figure_3.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/figure_3.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
+        figure("figure_3", caption="trajectories"),
+    params:
+        model="elasto_plastic",
     message:
-        "Draw figure 3, the elasto-plastic trajectories"
+        "Draw the trajectories of {params.model}, {rule}"
     script:
-        "../scripts/trajectories/figure_3.py"
+        "../scripts/trajectories/figure.py"
 
 
-rule figure_4:
+use rule figure_3 as figure_4 with:
     input:
-        trajectories=f"{RESULTS}/trajectories/obstacle.nc",
-        modules=sources("workflow/scripts/trajectories/figure_4.py"),
+        trajectories="<results>/trajectories/obstacle.nc",
     output:
-        report(
-            multiext(f"{RESULTS}/figures/figure_4", ".pdf", ".png"),
-            caption="../report/trajectories.rst",
-            category="Figures",
-        ),
-    log:
-        f"{RESULTS}/logs/figures/figure_4.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/figure_4.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
-    message:
-        "Draw figure 4, the obstacle trajectories"
-    script:
-        "../scripts/trajectories/figure_4.py"
+        figure("figure_4", caption="trajectories"),
+    params:
+        model="obstacle",
 
 
-rule figure_5:
+use rule figure_3 as figure_5 with:
     input:
-        trajectories=f"{RESULTS}/trajectories/friction.nc",
-        modules=sources("workflow/scripts/trajectories/figure_5.py"),
+        trajectories="<results>/trajectories/friction.nc",
     output:
-        report(
-            multiext(f"{RESULTS}/figures/figure_5", ".pdf", ".png"),
-            caption="../report/trajectories.rst",
-            category="Figures",
-        ),
-    log:
-        f"{RESULTS}/logs/figures/figure_5.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/figure_5.tsv"
-    conda:
-        "../envs/environment.yaml"
-    threads: 1
-    message:
-        "Draw figure 5, the friction trajectories"
-    script:
-        "../scripts/trajectories/figure_5.py"
+        figure("figure_5", caption="trajectories"),
+    params:
+        model="friction",

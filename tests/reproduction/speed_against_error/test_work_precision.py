@@ -154,7 +154,7 @@ class TestScripts:
         assert set(data["method"].values) >= {"Lie", "exact dry friction", "plain numba loop"}
         assert float(data["error"].max()) < 0.1 * 0.1
 
-    def test_growth(self, script):
+    def test_gamma2(self, script):
         """One scene of one variable and one of two."""
         scenes = {
             "friction": {"scene": {"model": "friction", "n": 100}},
@@ -164,7 +164,7 @@ class TestScripts:
             xr.Dataset({"gamma2": value, "gamma2_error": 1e-9})
             for value in (0.137696412899501, 0.441883416)  # METHODS, sections 1 and 4
         ]
-        data = script("growth")["growth"](
+        data = script("gamma2")["gamma2"](
             solved, list(scenes), scenes, [8], [[1e-2]] * 3, [2, 4, 6], 0.05, [1_000], 2
         )
         exact = data["error"].where(data["method"] == "deterministic", drop=True)

@@ -26,7 +26,7 @@ def convergence(spectral, finite_difference):
         plain.append(
             {"n": n, "printed": printed.get(n)}
             | {
-                f"finite_difference{kind}": float(paper[f"growth{kind}"]) if paper else None
+                f"finite_difference{kind}": float(paper[f"v_over_time{kind}"]) if paper else None
                 for kind in ("", "_error")
             }
             | value
@@ -35,9 +35,9 @@ def convergence(spectral, finite_difference):
             {
                 "$n$": penalization(n),
                 "printed": f"{printed[n]:.6f}" if n in printed else "--",
-                "paper's scheme": f"{float(paper['growth']):.7f}" if paper else "--",
-                r"$\pm$": scientific(paper["growth_error"], bound=True) if paper else "--",
-                "$v(0,T)/T$": f"{value['growth']:.10f}",
+                "paper's scheme": f"{float(paper['v_over_time']):.7f}" if paper else "--",
+                r"$\pm$": scientific(paper["v_over_time_error"], bound=True) if paper else "--",
+                "$v(0,T)/T$": f"{value['v_over_time']:.10f}",
                 r"$\gamma_n^2$": f"{value['gamma2']:.12f}",
                 r"$v(0,T)/T - \gamma_n^2$": scientific(value["offset"], 4),
             }

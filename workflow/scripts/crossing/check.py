@@ -11,21 +11,21 @@ from reproduction.tables import sorted_by
 FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 
 
-def compare(monte_carlo, asymptotic, growth):
+def compare(monte_carlo, asymptotic, gamma2):
     """Bound the bias of the time step and measure the distance to the limit.
 
-    A bias of the first-passage times is, for p large, the bias of the growth rate of the
-    variance, which the growth artifact has precisely. It must imply a bias of W below the largest
-    standard error of W; the direct measurement must not be significantly above the standard
-    error at any p, nor contradict the precise one at p >= 10.
+    For p large the relative bias of the first-passage times is that of gamma^2, of the opposite
+    sign, and the latter is known precisely. The bias of W that follows from it must be below the
+    largest standard error of W. The bias of W that is measured directly must not be significantly
+    above the standard error at any p, nor contradict the precise one at p >= 10.
 
     Parameters
     ----------
     monte_carlo : list of xarray.Dataset
         One per p.
     asymptotic : xarray.Dataset
-    growth : xarray.Dataset
-        The relative bias of v by the same step.
+    gamma2 : xarray.Dataset
+        Its relative bias by the same step.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def compare(monte_carlo, asymptotic, growth):
         for name in ("bias", "bias_error", "slope")
     }
     standard_error = np.array([float(d["probability_error"].max()) for d in monte_carlo])
-    relative, relative_error = float(growth["bias"]), float(growth["bias_error"])
+    relative, relative_error = float(gamma2["bias"]), float(gamma2["bias_error"])
     expected, expected_error = relative * column["slope"], relative_error * column["slope"]
     z = -ndtri(FALSE_ALARM / 2 / len(p))
     contradiction = np.abs(column["bias"] - expected) / np.hypot(
@@ -71,7 +71,7 @@ def compare(monte_carlo, asymptotic, growth):
             "standard_error": ("p", standard_error, "largest standard error of W"),
             "bias": ("p", column["bias"], "bias of W from the shift of first-passage times"),
             "bias_error": ("p", column["bias_error"], "its standard error"),
-            "limit_bias": ("p", expected, "bias of W from the growth rate of the variance"),
+            "limit_bias": ("p", expected, "bias of W from that of gamma^2"),
             "limit_bias_error": ("p", expected_error, "its standard error"),
         },
     )

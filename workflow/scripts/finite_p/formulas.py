@@ -21,7 +21,7 @@ FORMULAS = {
 }
 CONSTANTS = {
     "diffusion": "D = gamma^2 / 2",
-    "length": "extrapolation length kappa",
+    "kappa": "extrapolation length",
     "dispersion": "dispersion B",
     "corner": "dipole S of the corner between initial time and threshold",
     "stretch": "kappa_3, by which short waves see another extrapolation length",
@@ -105,6 +105,8 @@ def formulas(scene, threshold, horizons, p, fit_from):
         "slope_error": ("formula", deviations, "largest deviation of a slope between neighbours"),
     }
     constants, errors = map(asdict, expansion(scene))
+    for found in (constants, errors):
+        found["kappa"] = found.pop("length")
     for name, text in CONSTANTS.items():
         variables[name] = ((), constants[name], text)
         variables[f"{name}_error"] = ((), errors[name], "difference of two polynomial degrees")

@@ -120,7 +120,9 @@ def values(
         "finite_p": _finite_p(contained, formulas, finite_p),
         "convergence": {
             "horizon": f"{horizon:g}",
-            "growth_error": _scientific(max(r["growth_error"] for r in convergence), bound=True),
+            "growth_error": _scientific(
+                max(r["v_over_time_error"] for r in convergence), bound=True
+            ),
             "gamma2_error": _scientific(max(r["gamma2_error"] for r in convergence), bound=True),
         }
         | {key: f"{scheme[key]:g}" for key in ("half_width", "nodes", "time_step")},
@@ -202,7 +204,7 @@ def _ergodicity(found, section, scenes):
 
 def _finite_p(contained, formulas, section):
     """Constants and errors of the corrected formulas, and how often bands contain exact curves."""
-    constants = ("diffusion", "length", "dispersion", "corner", "stretch", "start")
+    constants = ("diffusion", "kappa", "dispersion", "corner", "stretch", "start")
     p, distance = formulas["p"].values, formulas["distance"]
     first, second = (distance.sel(formula=name).values for name in ("order 1", "order 2"))
     resolved = formulas["resolved"].any("horizon")
@@ -325,8 +327,8 @@ def _plasticity(deformation, variance, section):
         "relaxations": f"{section['duration'] / relaxation_time(oscillator):g}",
         "gamma2": f"{gamma2:.4f}",
         "gamma2_error": _scientific(variance["gamma2_error"], bound=True),
-        "length": f"{float(variance['length']):.2f}",
-        "length_error": f"{float(variance['length_error']):.2f}",
+        "kappa": f"{float(variance['kappa']):.2f}",
+        "kappa_error": f"{float(variance['kappa_error']):.2f}",
         "limits": limits,
         "low": f"{low:.2g}",
         "significant": f"{SIGNIFICANT:g}",

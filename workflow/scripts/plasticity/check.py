@@ -44,7 +44,7 @@ def compare(variance, monte_carlo):
         If the time step's bias is significantly above the standard error.
     """
     gamma2, gamma2_error = float(variance["gamma2"]), float(variance["gamma2_error"])
-    length, length_error = float(variance["length"]), float(variance["length_error"])
+    kappa, kappa_error = float(variance["kappa"]), float(variance["kappa_error"])
     limits = np.array([float(run["limit"]) for run in monte_carlo])
     durations = monte_carlo[0]["duration"].values
     z = -ndtri(FALSE_ALARM / 2 / (len(limits) * len(durations)))
@@ -58,10 +58,10 @@ def compare(variance, monte_carlo):
             )
         value, error = asymptotic_crossing(limit, durations, gamma2, gamma2_error)
         corrected, corrected_error = asymptotic_crossing(
-            limit + length, durations, gamma2, gamma2_error
+            limit + kappa, durations, gamma2, gamma2_error
         )
         farther, _ = asymptotic_crossing(
-            limit + length + length_error, durations, gamma2, gamma2_error
+            limit + kappa + kappa_error, durations, gamma2, gamma2_error
         )
         corrected_error = corrected_error + np.abs(farther - corrected)
         sampled, standard_error = run["probability"].values, run["probability_error"].values

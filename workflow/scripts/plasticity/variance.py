@@ -10,7 +10,7 @@ from reproduction.plasticity import yielding_oscillator
 
 
 def variance(ground, oscillator, tolerance, seed, threads):
-    """Compute the growth rate of the variance of the permanent deformation, and kappa.
+    """Compute the asymptotic variance of the permanent deformation, and kappa.
 
     Returns
     -------
@@ -20,16 +20,16 @@ def variance(ground, oscillator, tolerance, seed, threads):
     found = asymptotic_variance(
         scene, tolerance, method="monte_carlo", seed=(seed, "plasticity"), threads=threads
     )
-    length = extrapolation_length(scene, seed=(seed, "plasticity, length"), threads=threads)
+    kappa = extrapolation_length(scene, seed=(seed, "plasticity, length"), threads=threads)
     return artifact.dataset(
-        "Growth rate of the variance of the permanent deformation, and its extrapolation length",
+        "Asymptotic variance of the permanent deformation, and its extrapolation length",
         f"{scene}, {found.method}",
         {},
         {
-            "gamma2": ((), found.value, "growth rate of the variance of the deformation"),
+            "gamma2": ((), found.value, "gamma^2, asymptotic variance of the deformation"),
             "gamma2_error": ((), found.error, "its error"),
-            "length": ((), length.value, "extrapolation length of the limits"),
-            "length_error": ((), length.error, "its error"),
+            "kappa": ((), kappa.value, "extrapolation length of the limits"),
+            "kappa_error": ((), kappa.error, "its error"),
         },
     )
 

@@ -48,7 +48,7 @@ def limit(variance, solved, scenes, names, horizon, outputs):
             )
         if abs(value["settling"]) > ALLOWED * value["settling_error"]:
             raise CheckError(
-                f"the growth rate of {name} has not settled; lengthen sweep.variance.times"
+                f"the variance of {name} does not yet grow linearly; lengthen sweep.variance.times"
             )
         if abs(value["bias"]) > ALLOWED * (value["bias_error"] + value["gamma2_error"]):
             raise CheckError(
@@ -72,7 +72,7 @@ def limit(variance, solved, scenes, names, horizon, outputs):
         {
             "probability": (over, probability, "W_star(b / gamma, T)"),
             "probability_error": (over, probability_error, "error inherited from gamma^2"),
-            "gamma2": ("scene", rates, "growth rate of the variance of int_0^t g"),
+            "gamma2": ("scene", rates, "gamma^2, asymptotic variance of int_0^t g"),
             "gamma2_error": (
                 "scene",
                 errors,

@@ -11,7 +11,7 @@ from reproduction.jobs import produce
 
 
 def variance(scene, times, step, paths, halving_paths, seed, threads):
-    """Estimate the growth rate of the variance between two times, and its bias by the step.
+    """Estimate gamma^2 by the slope of the variance between two times, and its bias by the step.
 
     Returns
     -------
@@ -23,15 +23,19 @@ def variance(scene, times, step, paths, halving_paths, seed, threads):
     found = slopes(integrals_at(scene, times, sampling), times)
     bias, bias_error = gamma2_bias(scene, times, halving)
     return artifact.dataset(
-        "Growth rate of the variance of the integrated observable by Monte Carlo",
+        "Asymptotic variance of the integrated observable by Monte Carlo",
         f"{paths} paths of {scene}, from t = {times[0]:g} to {times[-1]:g}",
         {},
         {
-            "gamma2": ((), found.gamma2, "growth rate of the variance of int_0^t g"),
-            "gamma2_error": ((), found.gamma2_error, "standard error of the growth rate"),
-            "bias": ((), bias, "bias of the growth rate by the time step"),
+            "gamma2": ((), found.gamma2, "gamma^2, asymptotic variance of int_0^t g"),
+            "gamma2_error": ((), found.gamma2_error, "standard error of gamma^2"),
+            "bias": ((), bias, "bias of gamma^2 by the time step"),
             "bias_error": ((), bias_error, "standard error of the bias"),
-            "settling": ((), found.settling, "growth rate of the second half less the first's"),
+            "settling": (
+                (),
+                found.settling,
+                "gamma^2 from the second half of the time less that from the first",
+            ),
             "settling_error": ((), found.settling_error, "standard error of the difference"),
             "mean": ((), found.mean, "stationary mean of g"),
             "mean_error": ((), found.mean_error, "standard error of the mean"),

@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 from reproduction.plots import BLACK, BLUE, ORANGE, SKY, TEXT_WIDTH, draw
 
 
-def growth(spectral, finite_difference, monte_carlo, check):
+def three_methods(spectral, finite_difference, monte_carlo, check):
     """Draw the three methods above their deviations from the reference.
 
     Returns
@@ -62,4 +62,4 @@ def growth(spectral, finite_difference, monte_carlo, check):
 
 
 if __name__ == "__main__":
-    draw(growth, snakemake)
+    draw(three_methods, snakemake)

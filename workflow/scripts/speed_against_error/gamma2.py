@@ -11,7 +11,7 @@ from reproduction.jobs import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
 
-def growth(solved, names, scenes, degrees, tolerances, times, step, paths, rounds):
+def gamma2(solved, names, scenes, degrees, tolerances, times, step, paths, rounds):
     """Measure each scene, on one core; errors are relative.
 
     Parameters
@@ -78,4 +78,4 @@ def _sampled(scene, times, step, paths, unit, seed):
 
 
 if __name__ == "__main__":
-    produce(growth, snakemake)
+    produce(gamma2, snakemake)

@@ -14,13 +14,13 @@ from reproduction import artifact
 from reproduction.jobs import produce
 
 DESCRIPTIONS = {
-    "gamma2": "growth rate of the variance of int_0^t g",
-    "gamma2_error": "error bound of the growth rate",
-    "monte_carlo": "growth rate of the variance by Monte Carlo",
-    "monte_carlo_error": "standard error of the growth rate",
-    "bias": "bias of the growth rate by the time step",
+    "gamma2": "gamma^2, asymptotic variance of int_0^t g",
+    "gamma2_error": "error bound of gamma^2",
+    "monte_carlo": "gamma^2 by Monte Carlo",
+    "monte_carlo_error": "standard error of gamma^2",
+    "bias": "bias of gamma^2 by the time step",
     "bias_error": "standard error of the bias",
-    "settling": "growth rate of the second half less the first's",
+    "settling": "gamma^2 from the second half of the time less that from the first",
     "settling_error": "standard error of the difference",
     "correlation_time": "integral of the correlation of g over time",
     "correlation_time_error": "error of the correlation time",
@@ -69,7 +69,7 @@ def potentials(scenes, tolerance, times, paths, halving_paths, step, seed, threa
             ]
         )
     return artifact.dataset(
-        "Growth rate of the variance of the integrated observable under general potentials",
+        "Asymptotic variance of the integrated observable under general potentials",
         f"Poisson equation, and {paths} paths from t = {times[0]:g} to {times[-1]:g}",
         {"scene": ("scene", np.arange(len(scenes)), "number of the scene in the configuration")},
         {

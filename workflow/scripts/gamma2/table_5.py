@@ -7,7 +7,7 @@ from reproduction.gamma2 import compared
 from reproduction.tables import symbol, typeset
 
 
-def growth(solved, sampled, names, scenes):
+def two_methods(solved, sampled, names, scenes):
     """Tabulate both values of each scene and their deviation in standard errors.
 
     Parameters
@@ -45,4 +45,4 @@ def growth(solved, sampled, names, scenes):
 
 
 if __name__ == "__main__":
-    typeset(growth, snakemake)
+    typeset(two_methods, snakemake)

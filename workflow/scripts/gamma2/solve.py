@@ -22,12 +22,12 @@ def solve(scene, tolerance):
     scene = Scene(**scene)
     found = asymptotic_variance(scene, tolerance[scene.dimension - 1], "deterministic")
     return artifact.dataset(
-        "Growth rate of the variance of the integrated observable",
+        "Asymptotic variance of the integrated observable",
         f"{scene}, by {found.method}",
         {},
         {
-            "gamma2": ((), found.value, "growth rate of the variance of int_0^t g"),
-            "gamma2_error": ((), found.error, "error bound of the growth rate"),
+            "gamma2": ((), found.value, "gamma^2, asymptotic variance of int_0^t g"),
+            "gamma2_error": ((), found.error, "error bound of gamma^2"),
         },
     )
 

@@ -1,0 +1,58 @@
+# What all rules share, written once.
+from functools import partial
+
+
+pathvars:
+    results=config["outputs"]["results"],
+    logs="<results>/logs",
+    benchmarks="<results>/benchmarks",
+
+
+# no output may be empty
+outputflags:
+    partial(ensure, non_empty=True),
+
+
+def settings(section, *keys, **renamed):
+    """Look up the keys of a section of the configuration: only what a rule uses reruns it.
+
+    The section may contain wildcards. A parameter with another name than its key is given as
+    name="key".
+    """
+    keys = {key: key for key in keys} | renamed
+    return {name: lookup(f"{section}/{key}", within=config) for name, key in keys.items()}
+
+
+def number(wildcard):
+    """Read a wildcard as a number."""
+    return lambda wildcards: float(wildcards[wildcard])
+
+
+def figure(name, caption=None):
+    """Name the files of a figure, which the report shows with its caption."""
+    files = multiext(f"<results>/figures/{name}", ".pdf", ".png")
+    return report(files, caption=f"../report/{caption or name}.rst", category="Figures")
+
+
+def table(name):
+    """Name the files of a table."""
+    return multiext(f"<results>/tables/{name}", ".csv", ".tex", ".typ")
+
+
+def complete(job):
+    """Add to a rule with a script what follows from its docstring, its script and its output.
+
+    The docstring is the message. The modules that the script imports become inputs. The log and
+    the benchmark of <results>/topic/name.nc are <logs>/topic/name.log and
+    <benchmarks>/topic/name.tsv.
+    """
+    if job.script is None:
+        return
+    job.message = job.message or job.docstring
+    # snakemake sets these three only where a rule itself has an input, a log and a benchmark
+    job.input_modifier = job.log_modifier = job.benchmark_modifier = job.output_modifier
+    job.set_input(modules=sources(f"workflow/{job.script.removeprefix('../')}"))
+    name = Path(job.output[0].removeprefix(f"{config['outputs']['results']}/")).with_suffix("")
+    job.set_log(f"<logs>/{name}.log")
+    job.benchmark = f"<benchmarks>/{name}.tsv"
+    job.conda_env = "../envs/environment.yaml"
