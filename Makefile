@@ -1,5 +1,4 @@
-# make paper · make test · make smoke · make lint · make benchmark · make requests · make peers ·
-# make diagrams · make lock · make clean
+# `make help` lists the targets
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
