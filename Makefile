@@ -4,47 +4,48 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: env paper smoke test lint format benchmark requests peers diagrams lock clean
+.PHONY: help env paper smoke test lint format docs benchmark requests peers diagrams lock clean
+.DEFAULT_GOAL := help
 
-paper: env
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile
+
+paper: env ## environment, all computations, and paper/paper.pdf
 	$(BIN)/snakemake --cores $(CORES)
 
-smoke: env
+smoke: env ## every rule at reduced sizes, into results/smoke
 	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml -- all speed_against_error
 
-test: env
+test: env ## the tests, a reduced run of the whole workflow among them
 	$(BIN)/python -m pytest
 
-lint: env
+lint: env ## style and structure of the sources
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/snakemake --lint
 
-format: env
+format: env ## put the sources into the style that lint asks for
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 	$(BIN)/snakefmt Snakefile workflow
 
-# PEERS: python of an environment made from benchmarks/peers.txt, to measure them too
-benchmark: env
+benchmark: env ## speed of the simulation; PEERS=python measures others beside it
 	$(BIN)/python -m benchmarks.speed $(PEERS)
 
-# what a tolerance costs, against the best choice in hindsight
-requests: env
+requests: env ## what a tolerance costs, against the best choice in hindsight
 	$(BIN)/python -m benchmarks.requests
 
-# the peers' environment, which the work-precision diagrams then use
-peers:
+peers: ## the environment of the peers that the diagrams compare with
 	$(PYTHON) -m venv .venv-peers
 	.venv-peers/bin/python -m pip install --disable-pip-version-check --progress-bar off -r benchmarks/peers.txt
 
-# measures anew, on an idle machine, and refreshes the copies in docs/
-diagrams: env
+# on an idle machine
+diagrams: env ## measure speed against error anew, and refresh the copies in docs/
 	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_gamma2 measure_pathwise measure_cost -- speed_against_error
 	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
 
-env: $(VENV)/installed
+env: $(VENV)/installed ## the environment alone, in .venv
 
 $(VENV)/installed: environment-lock.txt pyproject.toml
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'nonsmooth needs Python >= 3.11; set PYTHON=python3.11 or newer')"
@@ -53,10 +54,24 @@ $(VENV)/installed: environment-lock.txt pyproject.toml
 	$(BIN)/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	touch $@
 
-# needs uv; pins every dependency of pyproject.toml for all platforms and Python versions
-lock:
-	uv pip compile pyproject.toml --all-extras --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file environment-lock.txt
+# the manual has an environment of its own
+docs: env .venv-docs/installed ## build the manual, docs/_build/html/index.html
+	mkdir -p docs/generated
+	$(BIN)/snakemake --rulegraph mermaid-js > docs/generated/rule_graph.txt
+	.venv-docs/bin/python -m sphinx -W --keep-going -n -q -b html docs docs/_build/html
 
-clean:
-	rm -rf results paper/paper.pdf .snakemake
+.venv-docs/installed: docs/environment-lock.txt pyproject.toml
+	$(PYTHON) -m venv .venv-docs
+	.venv-docs/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r docs/environment-lock.txt
+	.venv-docs/bin/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	touch $@
+
+# all dependencies, for all platforms and Python versions
+lock: ## pin the environments anew; needs uv
+	uv pip compile pyproject.toml --extra workflow --extra test --extra lint --extra build --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file environment-lock.txt
+	uv pip compile pyproject.toml --extra docs --extra build --constraint environment-lock.txt --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file docs/environment-lock.txt
+
+clean: ## remove what was computed, built or drawn
+	find results -mindepth 1 -maxdepth 1 ! -name README.md -exec rm -rf {} +
+	rm -rf paper/paper.pdf .snakemake docs/_build docs/generated docs/gallery docs/api/functions docs/sg_execution_times.rst
 	find src workflow tests -name __pycache__ -prune -exec rm -rf {} +
