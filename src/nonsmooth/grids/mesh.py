@@ -8,6 +8,7 @@ import sympy
 from nonsmooth.grids.elements import continuous, discontinuous
 from nonsmooth.grids.grading import geometric, layers, mirrored, split
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.penalties import n
 from nonsmooth.scenes.symbols import eta, x, y, zeta
 
 ORDER = (
@@ -117,15 +118,16 @@ def _last_below(reach, values, allowed):
 
 def _reach(scene, speed, forcing):
     """Half width of the displacement, given those of the velocity and of the forcing."""
-    if scene.mechanics.displacement_penalty != 0:  # inward drift beyond, for every velocity
-        return 1 + 1.02 * speed / scene.n
+    knot, _, outer = scene.mechanics.penalty.at(scene.n)
+    if scene.mechanics.is_plastic:  # inward drift beyond, for every velocity
+        return knot + 1.02 * speed / outer
     # the potential energy is that of the fastest velocity
     reach = np.geomspace(1e-3, 1e4, 4001)
     U = vectorised(scene.potential_expression, (x,))
     height = np.minimum(U(reach), U(-reach)) - min(U(reach).min(), U(-reach).min())
     free = _last_below(reach, height, speed**2 / 2 + forcing)
     if scene.mechanics.in_potential:
-        return min(free, 1 + speed / math.sqrt(scene.n) + forcing / scene.n)
+        return min(free, knot + speed / math.sqrt(outer) + forcing / outer)
     return free
 
 
@@ -133,7 +135,7 @@ def knots(scene):
     """Positive values at which a variable's coefficients, or the dynamics, have a kink."""
     knot, inner, _ = scene.mechanics.penalty.at(scene.n)
     found = {scene.mechanics.argument: knot}
-    if scene.mechanics.velocity_penalty == 0:
+    if not scene.mechanics.is_friction:
         found[y] = 0.0  # where the displacement turns back at a wall
     elif "eta" in scene.state and "x" not in scene.state:
         found[eta] = knot * (inner + scene.damping)  # the forcing that overcomes friction
@@ -149,7 +151,8 @@ def _holding(scene):
     if scene.mechanics.argument != x:
         return 0.0
     slope = vectorised(sympy.diff(scene.potential_expression, x), (x,))
-    return float(slope(np.array(1.0)) - slope(np.array(-1.0))) / 2
+    knot, _, _ = scene.mechanics.penalty.at(scene.n)
+    return float(slope(np.array(knot)) - slope(np.array(-knot))) / 2
 
 
 def _has_walls(scene, end):
@@ -237,8 +240,15 @@ def potentials(scene, ends):
             reach = np.linspace(-ends[symbol], ends[symbol], 201)
             found[symbol] = energy, np.ptp(vectorised(energy, (symbol,))(reach)) / _DEPTH
     if x in ends:
-        found[x] = scene.potential_expression, ends[y] ** 2 / (2 * _DEPTH)
+        found[x] = _displacement_potential(scene), ends[y] ** 2 / (2 * _DEPTH)
     return found
+
+
+def _displacement_potential(scene):
+    """U, and a spring's potential in it unless the spring becomes a wall at n = inf."""
+    if scene.mechanics.confines_displacement:
+        return scene.potential_expression
+    return scene.potential_expression + scene.mechanics.added_potential.subs(n, scene.n)
 
 
 def _resolved(edges, potential, temperature):

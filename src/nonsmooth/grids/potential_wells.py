@@ -32,8 +32,7 @@ def starts(scene):
     ends = mesh.box(scene if math.isfinite(scene.n) else scene.with_n(_STIFF), _DEPTH)
     places = {}
     for symbol, (potential, temperature) in mesh.potentials(scene, ends).items():
-        walls = symbol == x and scene.mechanics.argument == x
-        end = min(ends[symbol], 1.0) if walls else ends[symbol]
+        end = min(ends[symbol], scene.mechanics.wall) if symbol == x else ends[symbol]
         places[symbol.name] = _minima(vectorised(potential, (symbol,)), end, temperature)
     return [dict(zip(places, point, strict=True)) for point in itertools.product(*places.values())]
 

@@ -11,14 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 import scipy
-import sympy
 from numpy.polynomial import legendre
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.grading import growing, mirrored
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.penalties import n as penalization
 
 _NEGLIGIBLE = 80.0  # the mesh ends where the density has fallen by exp(-80) = 2e-35
 _SMALLEST = 2.0**-7  # width of the elements at a kink, in units of the state
@@ -61,13 +59,9 @@ def potential(scene):
         )
     y, penalty = symbols.y, scene.mechanics.penalty
     energy, knot = scene.damping * y**2 / 2, 0.0
-    if scene.mechanics.velocity_penalty != 0:
+    if scene.mechanics.is_friction:
         knot, _, _ = penalty.at(scene.n)
-        energy += (
-            sympy.Abs(y)
-            if knot == 0
-            else penalty.potential(y).subs(penalization, sympy.Float(scene.n))
-        )
+        energy += penalty.potential_at(y, scene.n)
     return 2 * energy / scene.noise.sigma**2, knot
 
 

@@ -51,6 +51,13 @@ class Penalty:
             (self.inner * z, sympy.Abs(z) <= self.knot), (sympy.sign(z) * tail, True)
         )
 
+    def potential_at(self, z, stiffness):
+        """Return phi_n(z) for n = `stiffness`, which may be inf if the knot then is at 0."""
+        if stiffness < float("inf"):
+            return self.potential(z).subs(n, sympy.Float(stiffness))
+        force, outer = (sympy.limit(f, n, sympy.oo) for f in (self.inner * self.knot, self.outer))
+        return force * sympy.Abs(z) + outer * z**2 / 2
+
     def at(self, stiffness):
         """Return (knot, inner, outer) as floats for n = `stiffness`, which may be inf."""
         return _at(self, float(stiffness))

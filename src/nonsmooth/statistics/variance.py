@@ -125,7 +125,7 @@ def _deterministic(scene, tol):
     if not scene.is_line:
         return *growth_to(scene, tol), "spectral elements"
     if (
-        scene.mechanics.velocity_penalty != 0
+        scene.mechanics.is_dry_friction
         and scene.observable_expression == symbols.y
         and scene.noise.sigma == 1.0
     ):

@@ -9,8 +9,7 @@ from nonsmooth.paths import schemes
 from nonsmooth.paths.kernels.compilation import kernel
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.schemes import strang
-
-_ROW = {"friction": STATE[2], "elasto_plastic": STATE[3], "obstacle": STATE[3]}  # y, x, x
+from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 
 @kernel
@@ -86,7 +85,9 @@ class BrownianPaths:
         kept = np.empty(increments.shape)
         data = new_panel(self.scene, 0, 0, "float64").data
         began = time.perf_counter()
-        _follow(s, data, increments, _ROW[self.scene.model], kept)
+        _follow(
+            s, data, increments, STATE[STATE_VARIABLES.index(self.scene.mechanics.argument)], kept
+        )
         return kept, time.perf_counter() - began
 
     def error(self, level):

@@ -46,11 +46,11 @@ class Scheme:
 
     def weak_order(self, scene):
         """Weak order for a scene: the kink of dry friction may cost half an order."""
-        return self.kink_order if scene.mechanics.velocity_penalty != 0 else self.smooth_order
+        return self.kink_order if scene.mechanics.is_friction else self.smooth_order
 
 
 SCHEMES = {
-    "strang": Scheme(strang, 2.0, 1.5, longest_step=strang.longest_step),
+    "strang": Scheme(strang, 2.0, 1.5, longest_step=strang.longest_step, handles=strang.handles),
     "dry_friction": Scheme(dry_friction, 2.0, 2.0, handles=dry_friction.handles, coupled=False),
     "drift_implicit": Scheme(drift_implicit, 1.0, 1.0, handles=drift_implicit.handles),
     # the smooth part is exact but for int g
@@ -68,6 +68,9 @@ SCHEMES = {
 def scheme(scene, name="strang"):
     """Return the scheme of that name.
 
+    A scene that the default, the Strang splitting, has no exact flows for is simulated by the
+    Euler-Maruyama scheme instead.
+
     Raises
     ------
     SceneError
@@ -75,9 +78,15 @@ def scheme(scene, name="strang"):
     """
     if name not in SCHEMES:
         raise SceneError(f"unknown scheme {name!r}; choose from {', '.join(SCHEMES)}")
-    if not SCHEMES[name].handles(scene):
-        raise SceneError(f"the scheme {name!r} cannot simulate this scene; choose 'strang'")
+    if not SCHEMES[_able(scene, name)].handles(scene):
+        cure = "choose 'strang'" if strang.handles(scene) else "choose a finite n and 'strang'"
+        raise SceneError(f"the scheme {name!r} cannot simulate this scene; {cure}")
+    name = _able(scene, name)
     return SCHEMES[name]
+
+
+def _able(scene, name):
+    return name if name != "strang" or strang.handles(scene) else "euler_maruyama"
 
 
 def coefficients(scene, name, step, precision="float32", control=None):
@@ -88,7 +97,7 @@ def coefficients(scene, name, step, precision="float32", control=None):
     SceneError
         If the scheme cannot simulate the scene, or not with such a step.
     """
-    chosen = scheme(scene, name)
+    chosen, name = scheme(scene, name), _able(scene, name)
     if not step < _longest_step(name, scene):
         raise SceneError(
             f"the scheme {name!r} is unstable with step = {step:g}; "

@@ -36,7 +36,7 @@ def handles(scene):
     return (
         scene.state == ("y",)
         and scene.noise.kind == "white"
-        and scene.mechanics.velocity_penalty != 0
+        and scene.mechanics.is_dry_friction
         and scene.observable_expression == symbols.y
     )
 

@@ -49,10 +49,10 @@ from nonsmooth.paths.kernels.panel import (
 from nonsmooth.paths.kernels.vector_math import fma, larger, like, maximum, minimum
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.penalties import ABSOLUTE_VALUE, BARRIER
 
 # kernels compare integers, not names
-_ELASTO_PLASTIC, _FRICTION, _OBSTACLE = 0, 1, 2
-_MODEL_CODE = {"elasto_plastic": _ELASTO_PLASTIC, "friction": _FRICTION, "obstacle": _OBSTACLE}
+_PLASTIC, _FRICTION, _SPRING = 0, 1, 2  # what the penalty force is
 _WHITE, _LANGEVIN, _HAMILTONIAN = 0, 1, 2
 _NOISE_CODE = {"white": _WHITE, "langevin": _LANGEVIN, "hamiltonian": _HAMILTONIAN}
 _VELOCITY, _PENALTY_FORCE, _FORMULA = 0, 1, 2  # observables
@@ -70,11 +70,12 @@ class Strang(NamedTuple):
 
     step: float
     normals: int
-    model: int
+    penalty: int
     noise: int
     observable: int
     moves: bool
     limit: bool
+    dry: bool
     linear: bool
     pushed: bool
     knot: float
@@ -129,11 +130,12 @@ def coefficients(scene, step, precision="float32"):
     return Strang(
         step=number(step),
         normals=2 if linear and scene.noise.kind == "hamiltonian" else 1,
-        model=_MODEL_CODE[scene.model],
+        penalty=_penalty_code(scene.mechanics),
         noise=_NOISE_CODE[scene.noise.kind],
         observable=observable,
         moves="x" in scene.state,
         limit=math.isinf(scene.n),
+        dry=scene.mechanics.is_dry_friction,
         linear=linear,
         pushed=pushed,
         knot=number(knot),
@@ -153,6 +155,20 @@ def coefficients(scene, step, precision="float32"):
     )
 
 
+def handles(scene):
+    """Whether there is an exact flow of the scene's penalty, and a step of its noise.
+
+    At n = inf there is a flow for the penalties of the paper; at a finite n for all but springs
+    that also act below the knot.
+    """
+    model = scene.mechanics
+    if scene.noise.kind not in _NOISE_CODE:
+        return False
+    if math.isinf(scene.n):
+        return model.penalty == (ABSOLUTE_VALUE if model.is_friction else BARRIER)
+    return not model.in_potential or model.penalty.at(scene.n)[1] == 0
+
+
 def longest_step(scene):
     """Step up to which what is not exact is stable: the kicks of U and a nonlinear noise's flow.
 
@@ -161,7 +177,8 @@ def longest_step(scene):
     """
     limit = math.inf
     if "x" in scene.state:
-        reach = 5.0 if scene.model == "friction" else 1.5
+        wall = scene.mechanics.wall
+        reach = wall + 0.5 if math.isfinite(wall) else 5.0
         stiffness = vectorised(sympy.diff(scene.potential_expression, symbols.x, 2), (symbols.x,))
         with np.errstate(all="ignore"):
             largest = np.nanmax(stiffness(np.linspace(-reach, reach, 401)))
@@ -180,6 +197,12 @@ def _is_linear(equations):
     jacobian = sympy.Matrix(list(equations.values())).jacobian(list(equations))
     at_rest = [f.subs(dict.fromkeys(equations, 0)) for f in equations.values()]
     return not jacobian.free_symbols and not any(at_rest)
+
+
+def _penalty_code(model):
+    if model.is_friction:
+        return _FRICTION
+    return _PLASTIC if model.is_plastic else _SPRING
 
 
 def _observable_code(scene):
@@ -341,10 +364,10 @@ def _gather_martingale(s, data, normal, lanes):
 def _displace(s, data, t, lanes):
     """X: the displacement (and the obstacle's velocity) over a time t."""
     weight = like(t, 1.0) if s.observable == _PENALTY_FORCE else like(t, 0.0)
-    if s.model == _FRICTION:
+    if s.penalty == _FRICTION:
         for i in range(lanes):
             data[X, i] = fma(t, data[Y, i], data[X, i])
-    elif s.model == _ELASTO_PLASTIC:
+    elif s.penalty == _PLASTIC:
         for i in range(lanes):
             y, x = data[Y, i], data[X, i]
             if s.limit:
@@ -354,12 +377,15 @@ def _displace(s, data, t, lanes):
             data[X, i] = after
             data[GAIN, i] += weight * (fma(y, t, x) - after)
     else:
+        per_knot = like(t, 1.0) / s.knot
         for i in range(lanes):
             y, x = data[Y, i], data[X, i]
             if s.limit:
                 after, x = exact_flows.elastic_impact(y, x, t)
             else:
-                after, x = exact_flows.spring_contact(y, x, t, s.omega)
+                # in units of the knot, where the contact begins
+                after, x = exact_flows.spring_contact(per_knot * y, per_knot * x, t, s.omega)
+                after, x = s.knot * after, s.knot * x
             data[Y, i], data[X, i] = after, x
             data[GAIN, i] += weight * (y - after)
 
@@ -368,9 +394,9 @@ def _displace(s, data, t, lanes):
 def _accelerate(s, data, t, lanes):
     """Y: the velocity over a time t, with displacement and forcing frozen."""
     undriven = s.noise == _WHITE and not s.pushed
-    if undriven and s.model != _FRICTION:
+    if undriven and s.penalty != _FRICTION:
         return
-    if undriven and s.observable != _PENALTY_FORCE:
+    if undriven and s.dry and s.observable != _PENALTY_FORCE:
         for i in range(lanes):
             data[Y, i] = exact_flows.at_rest(
                 data[Y, i], t, s.knot, like(t, 1.0) if s.limit else s.inner
@@ -383,7 +409,7 @@ def _accelerate(s, data, t, lanes):
     else:
         for i in range(lanes):
             data[WORK, i] = data[ETA, i]
-    if s.model == _FRICTION:
+    if s.penalty == _FRICTION:
         weight = like(t, 1.0) if s.observable == _PENALTY_FORCE else like(t, 0.0)
         for i in range(lanes):
             y = data[Y, i]
