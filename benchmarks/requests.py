@@ -617,7 +617,7 @@ QUANTITIES = {
 def empty_caches():
     """Forget what has been computed of scenes; compiled formulas stay."""
     for kept in (
-        quadrature._solved,
+        quadrature.solved,
         corrected_formula._constants,
         tail_equation.march,
         tail_equation.reach,

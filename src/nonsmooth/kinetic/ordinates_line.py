@@ -12,8 +12,8 @@ import numpy as np
 from nonsmooth.grids.elements import continuous, lobatto
 from nonsmooth.grids.grading import distinct
 from nonsmooth.grids.solvers import EVEN, ODD
-from nonsmooth.line import quadrature
-from nonsmooth.line.eigenfunctions import potential
+from nonsmooth.line.kinks import isolated_zeros, sign_changes, switches
+from nonsmooth.line.potential import potential
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
@@ -151,7 +151,7 @@ def ordinates(
         scene,
         depth,
         [knot, -knot],
-        [expression, *quadrature.switches(expression)],
+        [expression, *switches(expression)],
         time,
         reach,
         deepest,
@@ -182,15 +182,6 @@ def ordinates(
     return Ordinates(True, y[upper], g[upper], 2 * own * masses[upper], halves, start)
 
 
-def ends_of_zeros(g, places, end):
-    """Return those of the places at which g vanishes, but not on both sides."""
-    places = np.unique(places)
-    beside = np.abs(g(places[:, None] + np.array([-1e-9, 1e-9]) * end))
-    # a zero that was bisected is not exact; next to it g is small, next to a pole or a kink not
-    vanishes = np.abs(g(places)) <= np.max(beside, axis=1)
-    return places[vanishes & np.any(beside > 0, axis=1)]
-
-
 def _stiffness(axis, degree, density):
     """<phi_i', phi_j'> by the elements' own quadrature."""
     _, weights, slope = lobatto(degree)
@@ -217,8 +208,8 @@ def _edges(scene, depth, kinks, switches, time, reach, deepest, grading, distanc
     end = min(max(end, abs(start) + _REACH * fine), abs(start) + reach)
     inside = np.linspace(-end, end, 501)
     functions = [vectorised(f, (symbols.y,)) for f in switches]
-    zeros, *others = [quadrature.sign_changes(f, inside) for f in functions]
-    zeros = ends_of_zeros(functions[0], np.concatenate([zeros, *others]), end)
+    zeros, *others = [sign_changes(f, inside) for f in functions]
+    zeros = isolated_zeros(functions[0], np.concatenate([zeros, *others]), end)
     starts = [start, -start] if scene.is_odd() else [start]
     singular = np.append(zeros, starts)
     finest = np.append(np.full(len(zeros), _FINEST), np.full(len(starts), _PASSING)) * fine

@@ -17,9 +17,8 @@ from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from nonsmooth.errors import SceneError
-from nonsmooth.kinetic.ordinates_line import ends_of_zeros
-from nonsmooth.line import quadrature
-from nonsmooth.line.eigenfunctions import potential
+from nonsmooth.line.kinks import isolated_zeros, sign_changes, switches
+from nonsmooth.line.potential import potential
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
@@ -163,10 +162,9 @@ def tail(scene):
         )
     everywhere = np.linspace(-2 * start, 2 * start, _PROBED)
     zeros, *others = [
-        quadrature.sign_changes(vectorised(f, (y,)), everywhere)
-        for f in [expression, *quadrature.switches(expression)]
+        sign_changes(vectorised(f, (y,)), everywhere) for f in [expression, *switches(expression)]
     ]
-    zeros = ends_of_zeros(g, zeros, 2 * start)
+    zeros = isolated_zeros(g, zeros, 2 * start)
     places = side * np.concatenate([[knot, -knot], zeros, *others])
     kinks = np.unique(places[places > level])
     floor = max(places[(places > 0) & (places <= level)], default=0.0)

@@ -1,25 +1,18 @@
-"""Legendre spectral elements in L^2(m) for one-dimensional scenes (state y, white noise).
+"""Eigenfunctions of the generator of a scene with one state variable, and moments of int_0^t g.
 
-The generator A = (sigma^2/2) d_yy - b d_y is self-adjoint in L^2(m), m the invariant density.
-Elements have their edges on the kinks of the drift and are graded towards them, so that the
-convergence in the polynomial degree is exponential for every penalization.
+A = (sigma^2/2) d_yy - b d_y is self-adjoint in L^2(m), so that -A has real eigenvalues lambda_k
+and orthonormal eigenfunctions phi_k. They are those of the matrices of `spectral_elements`.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 import scipy
-from numpy.polynomial import legendre
 
-from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.grids.grading import growing, mirrored
-from nonsmooth.scenes import symbols
-from nonsmooth.scenes.formulas import vectorised
-
-_NEGLIGIBLE = 80.0  # the mesh ends where the density has fallen by exp(-80) = 2e-35
-_SMALLEST = 2.0**-7  # width of the elements at a kink, in units of the state
+from nonsmooth.errors import ToleranceError
+from nonsmooth.line import tuning
+from nonsmooth.line.spectral_elements import assemble, mesh
+from nonsmooth.scenes.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -44,65 +37,12 @@ class Spectrum:
     start: np.ndarray
 
 
-def potential(scene):
-    """Return -log m, up to a constant, as a sympy expression in y, and its kink.
+def spectrum(scene: Scene, degree: int) -> Spectrum:
+    """Solve the eigenproblem of -A.
 
-    Raises
-    ------
-    SceneError
-        If the scene's state is not y alone or its noise is not white.
-    """
-    if not scene.is_line:
-        raise SceneError(
-            f"no deterministic solver for the state ({', '.join(scene.state)}) with "
-            f"{scene.noise.title}; use simulate, which takes every scene"
-        )
-    y, penalty = symbols.y, scene.mechanics.penalty
-    energy, knot = scene.damping * y**2 / 2, 0.0
-    if scene.mechanics.is_friction:
-        knot, _, _ = penalty.at(scene.n)
-        energy += penalty.potential_at(y, scene.n)
-    return 2 * energy / scene.noise.sigma**2, knot
-
-
-def mesh(scene):
-    """Return the element edges on which the drift is smooth, increasing, symmetric about 0."""
-    energy, knot = potential(scene)
-    depth = vectorised(energy, (symbols.y,))
-    end = 1.0
-    while depth(end / 1.25) > _NEGLIGIBLE:
-        end /= 1.25
-    while depth(end) < _NEGLIGIBLE:
-        end *= 1.25
-    start = abs(scene.start.get("y", 0.0))
-    if depth(start) > _NEGLIGIBLE:
-        raise SceneError(
-            f"the start y = {scene.start['y']:g} is too far in the tails, where spectral elements "
-            "weighted by the stationary density have no digits; start nearer or use simulate"
-        )
-    end = max(end, 1.5 * start)
-    knot = min(knot, end)  # beyond, the kink is never seen
-    finest, widest = min(max(_SMALLEST, knot / 4), end / 8), end / 8
-    outer = growing(knot, end, finest, widest)
-    inner = -growing(-knot, 0.0, finest, widest, spare=1.5)
-    return mirrored([start, *outer, *inner])
-
-
-@lru_cache(maxsize=8)
-def _reference_element(degree):
-    """Lagrange basis on the Gauss-Lobatto nodes at over-integrating Gauss points."""
-    # the zeros of the Legendre polynomial's slope
-    inner, _ = scipy.special.roots_jacobi(degree - 1, 1, 1)
-    nodes = np.concatenate([[-1.0], inner, [1.0]])
-    points, weights = legendre.leggauss(degree + 16)
-    to_modes = np.linalg.inv(legendre.legvander(nodes, degree))
-    values = legendre.legvander(points, degree) @ to_modes
-    slopes = legendre.legval(points, legendre.legder(to_modes)).T
-    return nodes, points, weights, values, slopes
-
-
-def assemble(scene, degree):
-    """Assemble mass, stiffness and observable matrices in L^2(m).
+    Instead of K phi = lambda M phi, the equivalent M phi = nu (M + K/s) phi is solved, with
+    nu = 1/(1 + lambda/s) and s = C_b, which is of the size of the small eigenvalues. Rounding
+    errors are then relative to these, which matter most, and not to the largest one.
 
     Parameters
     ----------
@@ -112,61 +52,14 @@ def assemble(scene, degree):
 
     Returns
     -------
-    nodes : numpy.ndarray, shape (k,)
-    mass, stiffness, observable : numpy.ndarray, shape (k, k)
-        <phi_i, phi_j>, (sigma^2/2) <phi_i', phi_j'> and <g phi_i, phi_j>, m of total mass 1.
-    """
-    edges = mesh(scene)
-    energy, _ = potential(scene)
-    depth = vectorised(energy, (symbols.y,))
-    g = vectorised(scene.numerical_observable(), (symbols.y,))
-    nodes, points, weights, values, slopes = _reference_element(degree)
-    size = (len(edges) - 1) * degree + 1
-    mass, stiffness, observable = np.zeros((3, size, size))
-    where = np.empty(size)
-    for k, (left, right) in enumerate(pairwise(edges)):
-        half = (right - left) / 2
-        here = slice(k * degree, (k + 1) * degree + 1)
-        where[here] = left + half * (nodes + 1)
-        at = left + half * (points + 1)
-        weight = weights * half * np.exp(-depth(at))
-        values_of_g = _finite(g, at, scene)
-        mass[here, here] += values.T @ (weight[:, None] * values)
-        observable[here, here] += values.T @ ((weight * values_of_g)[:, None] * values)
-        local = slopes.T @ ((weight / half**2)[:, None] * slopes)
-        # constants have no energy: enforced, or rounding of the smallest elements costs digits
-        stiffness[here, here] += local - np.diag(local.sum(axis=1))
-    total = mass.sum()
-    factor = scene.noise.sigma**2 / 2
-    return where, mass / total, factor * stiffness / total, observable / total
-
-
-def _finite(g, at, scene):
-    with np.errstate(all="ignore"):
-        value = g(at)
-    if not np.all(np.isfinite(value)):
-        raise SceneError(
-            f"g = {scene.observable!r} is not finite at y = {at[~np.isfinite(value)][0]:g}; "
-            "choose one that is, or write it so that it does not overflow"
-        )
-    return value
-
-
-def spectrum(scene, degree):
-    """Solve the eigenproblem of -A.
-
-    The pencil is solved as M phi = nu (M + K/s) phi, nu = 1/(1 + lambda/s), with s = C_b the
-    scale of the slow modes: the rounding error is then relative to them, which carry the
-    answer, and not to the fastest one.
-
-    Parameters
-    ----------
-    scene : Scene
-    degree : int
-
-    Returns
-    -------
     Spectrum
+
+    Raises
+    ------
+    SceneError
+        If the scene has another state or noise, starts too far out, or g is not finite.
+    ToleranceError
+        If entries of the matrices overflow.
     """
     nodes, mass, stiffness, observable = assemble(scene, degree)
     shifted = mass + stiffness / scene.damping
@@ -178,7 +71,7 @@ def spectrum(scene, degree):
         raise ToleranceError(
             f"the generator of {scene} is beyond the range of numbers; choose C_b and n closer to 1"
         ) from None
-    keep = nu > 1e-13
+    keep = nu > tuning.SPECTRAL_ELEMENTS.least_nu
     nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * scale[:, None]
     vectors /= np.sqrt(nu)  # normalised in L^2(m)
     start = vectors[np.argmin(np.abs(nodes - scene.start.get("y", 0.0)))]
@@ -190,45 +83,56 @@ def spectrum(scene, degree):
     return Spectrum(rates, product[0], product, start)
 
 
-def mean(scene, degree=12):
-    """Stationary mean of the observable."""
+def mean(scene: Scene, degree: int | None = None) -> float:
+    """Return the mean of the observable under the invariant density."""
+    if degree is None:
+        degree = tuning.SPECTRAL_ELEMENTS.degree_of_mean
     return assemble(scene.with_start({}), degree)[3].sum()
 
 
-def rounding(scene, degree):
-    """Bound on the relative rounding error of all results.
+def rounding(scene: Scene, degree: int) -> float:
+    """Bound the relative rounding error of all results.
 
-    The stiffness matrix, of size degree^2 / width, is applied to smooth functions, for which its
-    entries cancel; the natural length of the state is C_b^(-1/2). The law is this reasoning, its
-    factor 4 experience: against the closed form, over n = 100 ... 1e6 and C_b = 0.2 ... 5, the
-    error came to at most twice eps degree^2 / width.
+    Entries of the stiffness matrix are of the size degree^2 / width and cancel when it is applied
+    to smooth functions; the unit of y is C_b^(-1/2), over which these change. The factor in front
+    was fitted, see `tuning`.
     """
     width = np.min(np.diff(mesh(scene))) * np.sqrt(scene.damping)
-    return 4 * np.finfo(float).eps * degree**2 * max(1.0, 1 / width)
+    factor = tuning.SPECTRAL_ELEMENTS.rounding
+    return factor * np.finfo(float).eps * degree**2 * max(1.0, 1 / width)
 
 
-def asymptotic_variance(scene, degree):
+def asymptotic_variance(scene: Scene, degree: int) -> float:
     """gamma^2 = 2 sum_k <g, phi_k>^2 / lambda_k."""
     s = spectrum(scene, degree)
     return 2 * np.sum(s.observable[1:] ** 2 / s.rates[1:])
 
 
-def moments(scene, times, degree):
+def moments(scene: Scene, times: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
     """w(start, tau) of the centred observable and v(start, tau) (eqs. PDEw, defvgyt).
 
-    v = 2 sum_jk g_k <g phi_k, phi_j> phi_j(start) I_jk - w^2, every time integral
-    I_jk = int_0^tau exp(-lambda_j s) (1 - exp(-lambda_k (tau - s))) / lambda_k ds
-    evaluated without cancellation.
+    w is the mean of int_0^tau g and v its variance,
+
+        v = 2 sum_jk g_k <g phi_k, phi_j> phi_j(start) I_jk - w^2,
+
+    with the integrals I_jk = int_0^tau exp(-lambda_j s) (1 - exp(-lambda_k (tau - s))) / lambda_k
+    ds in a form in which nothing cancels.
 
     Parameters
     ----------
     scene : Scene
     times : numpy.ndarray, shape (t,)
     degree : int
+        Polynomial degree of the elements.
 
     Returns
     -------
     w, v : numpy.ndarray, shape (t,)
+
+    Raises
+    ------
+    SceneError, ToleranceError
+        As from `spectrum`.
     """
     s = spectrum(scene, degree)
     rate, g = s.rates[1:], s.observable[1:]

@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 
-from nonsmooth.line import eigenfunctions
+from nonsmooth.line import eigenfunctions, potential
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
@@ -79,8 +79,7 @@ def poisson_slope(scene):
     """
     if not scene.is_line:
         return None
-    energy, _ = eigenfunctions.potential(scene)
-    depth = vectorised(energy, (symbols.y,))
+    depth = potential.depth(scene)
     reach = 1.0
     while depth(reach / 1.1) > _NEGLIGIBLE:
         reach /= 1.1

@@ -15,9 +15,7 @@ from nonsmooth.crossing.first_passage.line import Late, Line
 from nonsmooth.crossing.first_passage.time_stepping import UnstableError
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.kinetic import tail_descent
-from nonsmooth.line.eigenfunctions import potential
-from nonsmooth.scenes import symbols
-from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.line.potential import depth
 
 # of the decay per relaxation time of a slow crossing, as measured against the second order formula;
 # without symmetry the slow mode is not apart
@@ -172,8 +170,7 @@ def _refined(problem, times, tol, solve):
 
 def _start_depth(scene):
     """Logarithm of the largest invariant density over that at the start."""
-    energy, _ = potential(scene)
-    return float(vectorised(energy, (symbols.y,))(scene.start.get("y", 0.0)))
+    return float(depth(scene)(scene.start.get("y", 0.0)))
 
 
 def _largest_nearby(errors, values, times):
