@@ -336,7 +336,7 @@ def one_grid(solve, levels=(0, 1, 2, 3, 4, 5), most=4):
     """Solve on a single tensor grid, of the same level in all of up to `most` variables."""
 
     def on(request, level):
-        depth = math.log(1 / request.tol) + tensor_grid.SPARE
+        depth = tensor_grid.depth_for(request.tol)
         grid = tensor_grid.fitted(request.scene, depth, min(level, 1))
         return solve(request, replace(grid, levels=dict.fromkeys(grid.levels, level)))
 

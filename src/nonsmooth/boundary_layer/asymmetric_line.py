@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.grids.solvers import EVEN
+from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic.ordinates_line import UNHURRIED, ordinates
 from nonsmooth.line import quadrature
 

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.ordinates_line import UNHURRIED, ordinates
 
 EXACT = 1e-8

@@ -11,8 +11,8 @@ import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.generator import evaluate, start_row
-from nonsmooth.grids.solvers import EVEN, ODD
-from nonsmooth.grids.tensor_grid import fitted, raised, solver
+from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.grids.tensor_grid import fitted, solver
 from nonsmooth.statistics.gamma2_on_grids import growth_to
 
 _DEPTH = 16.0  # the density outside the box is of the order exp(-16) of its maximum
@@ -70,7 +70,7 @@ def leading(scene, tol=1e-3):
         values, errors = _refined_from(scene, grid, tol, best)
         if errors.max() <= tol:
             break
-        grid, best = raised(grid), values[0]
+        grid, best = grid.all_raised(), values[0]
     gamma2, uncertainty = growth_to(scene, _GROWTH)
     return (
         Leading(gamma2 / 2, *map(float, values)),

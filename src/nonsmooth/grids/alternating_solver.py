@@ -1,29 +1,44 @@
-"""The Poisson equation on large tensor grids, by alternating directions and Krylov spaces."""
+"""The Poisson equation on large tensor grids, by alternating directions and a Krylov space.
+
+With colored noise the generator is the sum A = L + T of the noise's own generator L and of the
+transport T by the oscillator's drift. L acts on the variables of the noise only, and T does not mix
+different values of the noise, so that both are easily inverted: one step of alternating
+directions, 2 a (a - T)^-1 (a - L)^-1 with a rate a > 0, is close to -A^-1 on what decays at
+such rates. It preconditions GMRES.
+"""
+
+from collections.abc import Mapping
 
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from sympy import Symbol
 
 from nonsmooth.errors import ToleranceError
+from nonsmooth.grids import tuning
+from nonsmooth.grids.direct_solver import factorise
+from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
-from nonsmooth.grids.solvers import EVEN, ODD, factorise
+from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x
 
-_DEPTH = 14.0  # of the box in the norm of residuals, that of a normal density
-_KRYLOV = 150  # vectors kept by GMRES
-_RESTARTS = 4
 
-
-class Split:
+class AlternatingSolver:
     """Solver by alternating directions and GMRES, for scenes with colored noise.
 
-    Functions are arrays of the shape (forcing eta, oscillator, zeta).
+    See `solver.PoissonSolver` for what it promises. Folded functions are arrays of the shape
+    (forcing eta, oscillator, zeta), flattened.
 
     Parameters
     ----------
-    scene, axes, mirrored
-        As for `Direct`.
+    scene : Scene
+        With a finite n and colored noise.
+    axes : dict
+        Maps symbols to axes, see `mesh.axes`.
+    mirrored : bool
+        Whether to use that drift and observable are odd. No node may be its own mirror image.
     shift : float
         The number a of the preconditioner, a rate between those of L and of T.
 
@@ -35,7 +50,7 @@ class Split:
         Iterations after which to give up.
     """
 
-    def __init__(self, scene, axes, mirrored, shift):
+    def __init__(self, scene: Scene, axes: Mapping[Symbol, Axis], mirrored: bool, shift: float):
         noise = {symbol: axes[symbol] for symbol in scene.noise.drift}
         noise = {symbol: axes[symbol] for symbol in axes if symbol in noise}
         forcing, *own = noise
@@ -60,31 +75,32 @@ class Split:
             T[i * size : (i + 1) * size, i * size : (i + 1) * size].tocsr()
             for i in range(self.kept)
         ]
-        self.shift, self.most = shift, _KRYLOV * _RESTARTS
+        self.shift = shift
+        self.most = tuning.ALTERNATING_DIRECTIONS.krylov * tuning.ALTERNATING_DIRECTIONS.restarts
         self._resolvents = [factorise(shift * sp.eye_array(size) - t) for t in self.transport]
         self._noise_factors = {
             sign: scipy.linalg.lu_factor(shift * np.eye(len(part)) - part)
             for sign, part in self.noise.items()
         }
-        # a measure near the origin that a constant is recovered with
+        # solutions are made unique by their mean in this measure, which is near the origin
         masses = scipy.linalg.null_space(self.noise[EVEN].T, rcond=1e-9)[:, 0]
         masses = masses.reshape(self.kept, 1, self.own) / masses.sum()
         near = _bump(rest)
         self.measure = (masses * near[None, :, None]).ravel()
         self.measure /= self.measure.sum()
-        # errors of means are bounded by the norm weighted with the density, not by the plain one,
-        # which is governed by the corners of the box; between walls the density does not fall
+        # Residuals are weighted with a density, because they are to bound errors of means; without
+        # weights, the corners of the box would count most. Between walls the density does not fall.
         flat = scene.mechanics.argument if scene.mechanics.argument == x else None
         self._scale = self.fold(np.sqrt(_normal(axes, flat)))
 
-    def unfold(self, half, parity):
+    def unfold(self, half: np.ndarray, parity: int) -> np.ndarray:
         """Continue a function from half of the grid to all of it."""
         values = half.reshape(self.shape)
         if self.mirrored:
             values = np.concatenate([values, parity * values[::-1, ::-1, ::-1]])
         return values.transpose(0, 2, 1).ravel()
 
-    def fold(self, whole):
+    def fold(self, whole: np.ndarray) -> np.ndarray:
         """Restrict a function to the half of the grid that is solved on."""
         values = whole.reshape(self.forcing, self.own, self.mechanics)
         return np.ascontiguousarray(values[: self.kept].transpose(0, 2, 1)).ravel()
@@ -99,8 +115,8 @@ class Split:
             result = apply(parity, even) + apply(-parity, columns - even)
         return result.reshape(self.kept, self.own, self.mechanics).transpose(0, 2, 1)
 
-    def generator(self, values, parity, adjoint=False):
-        """Apply A, or its transpose, to a function."""
+    def generator(self, values: np.ndarray, parity: int, adjoint: bool = False) -> np.ndarray:
+        """Apply A, or its transpose, to a folded function."""
         values = values.reshape(self.shape)
         result = np.stack(
             [(t.T if adjoint else t) @ part for t, part in zip(self.transport, values, strict=True)]
@@ -161,8 +177,8 @@ class Split:
             scale * right,
             M=spla.LinearOperator(shape, precondition, dtype=float),
             rtol=accuracy,
-            restart=_KRYLOV,
-            maxiter=_RESTARTS,
+            restart=tuning.ALTERNATING_DIRECTIONS.krylov,
+            maxiter=tuning.ALTERNATING_DIRECTIONS.restarts,
             callback=count,
             callback_type="pr_norm",
         )
@@ -176,13 +192,20 @@ class Split:
             "in scenes that mix slowly; loosen tol or use Monte Carlo"
         )
 
-    def solve(self, values, parity, accuracy):
-        """Solve -A u = f - E f; see `Direct.solve`.
+    def solve(self, values: np.ndarray, parity: int, accuracy: float) -> tuple[np.ndarray, float]:
+        """Solve -A u = f - E f.
 
         Parameters
         ----------
+        values, parity
+            As of `solver.PoissonSolver.solve`.
         accuracy : float
             Norm of the residual, weighted with a normal density, relative to that of f.
+
+        Returns
+        -------
+        u, mean
+            As of `solver.PoissonSolver.solve`.
 
         Raises
         ------
@@ -194,17 +217,17 @@ class Split:
             return solution, 0.0
         return solution, float(self.measure @ solution)
 
-    def stationary(self, accuracy):
+    def stationary(self, accuracy: float) -> np.ndarray:
         """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
         masses = self.unfold(self._gmres(self.measure, EVEN, accuracy, adjoint=True), EVEN)
         return masses / masses.sum()
 
 
 def _normal(axes, flat):
-    """Evaluate a normal density, exp(-_DEPTH) at the box's ends, but flat in one variable."""
+    """Evaluate a normal density that falls towards the box's ends, but not in one variable."""
     total = np.ones(1)
     for symbol, axis in axes.items():
-        depth = 0 if symbol == flat else _DEPTH
+        depth = 0 if symbol == flat else tuning.ALTERNATING_DIRECTIONS.depth
         total = np.kron(total, np.exp(-depth * (axis.nodes / axis.edges[-1]) ** 2))
     return total
 

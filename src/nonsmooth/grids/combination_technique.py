@@ -1,18 +1,21 @@
 """The dimension-adaptive combination technique for a functional that is computed on tensor grids.
 
-Each variable has a level. The surplus of an index, one level for each variable, is what it adds to
-all lower ones: the alternating sum over its neighbours below. Surpluses of indices high in several
-variables are small, so that the sum over a set of indices of which none is high in all of them has
-the accuracy of a grid that is. The set grows where much is missing for its cost.
+Each variable has a level; an index is a tuple of levels, one for each variable. The surplus of an
+index is what its grid adds to all coarser grids: the alternating sum over the neighbours below.
+Surpluses are small where several variables are fine at once. A sum over grids that are fine in a
+few variables only is therefore as accurate as a single grid that is fine in all of them, and much
+cheaper. The set of indices grows where most accuracy is gained for the cost.
 
 Gerstner & Griebel, Computing 71 (2003) 65-87.
 """
 
 import itertools
 import math
+from collections.abc import Callable
 
-_RELAPSE = 0.25  # of the surplus before the last, if the last is small by chance
-_MIXED = 0.25  # of a surplus is left if another variable is raised too
+from nonsmooth.grids import tuning
+
+Index = tuple[int, ...]
 
 
 class Combination:
@@ -35,7 +38,13 @@ class Combination:
         The functional.
     """
 
-    def __init__(self, lowest, coarsest, evaluate, cost):
+    def __init__(
+        self,
+        lowest: Index,
+        coarsest: float,
+        evaluate: Callable[[Index], float],
+        cost: Callable[[Index], float],
+    ):
         self._lowest, self._evaluate, self._cost = lowest, evaluate, cost
         self._values, self._surplus = {}, {}
         self.value, self._missing = 0.0, {}
@@ -66,7 +75,7 @@ class Combination:
     def _expected(self, index):
         """Bound a surplus by those of its parents, as if surpluses hardly decayed.
 
-        A single one of them may be small by chance.
+        The surplus of a single parent may be small by chance, so the one before it counts as well.
         """
         raised = [k for k in self._axes if index[k] > self._lowest[k]]
         bounds = []
@@ -77,15 +86,15 @@ class Combination:
             bounds.append(abs(self._surplus[parent]))
             before = self._parent(parent, k)
             if before is not None and before != self._lowest:
-                bounds.append(_RELAPSE * abs(self._surplus[before]))
-        return max(bounds) * (1.0 if len(raised) == 1 else _MIXED)
+                bounds.append(tuning.COMBINATION_TECHNIQUE.relapse * abs(self._surplus[before]))
+        return max(bounds) * (1.0 if len(raised) == 1 else tuning.COMBINATION_TECHNIQUE.mixed)
 
     @property
-    def error(self):
-        """What the indices that are next to the set may add, and with them all beyond."""
+    def error(self) -> float:
+        """Bound on what all indices outside the set add: those next to it, and those beyond."""
         return sum(self._missing.values())
 
-    def refine(self, most):
+    def refine(self, most: float) -> float:
         """Add the index that is expected to add most for its cost, unless it costs too much.
 
         Returns
@@ -101,7 +110,7 @@ class Combination:
         self._add(best, self._evaluate(best))
         return costs[best]
 
-    def dearest(self):
+    def dearest(self) -> Index:
         """Return the index in the set whose grid costs most."""
         return max(self._values, key=self._cost)
 

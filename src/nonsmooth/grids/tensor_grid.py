@@ -1,27 +1,23 @@
-"""gamma^2 of scenes with several variables, on tensor grids that are refined until it settles.
-
-Many grids, of which none is fine in all variables, are combined (`combination`); what the grids
-beyond would add is the error.
-"""
+"""Tensor grids of a scene's state: their box, their resolution, and the solver on them."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from sympy import Symbol
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids import mesh
-from nonsmooth.grids.alternating_solver import Split
+from nonsmooth.grids import tuning
+from nonsmooth.grids.alternating_solver import AlternatingSolver
+from nonsmooth.grids.direct_solver import DirectSolver
+from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import evaluate
-from nonsmooth.grids.solvers import ODD, Direct
-
-MARGIN = 0.15  # of the box, to see whether it matters
-_SHIFTS = (12.0, 5.0, 30.0, 2.0)  # in the order in which they are likely to be the best
-_FITS = 4
-SPARE = 10.0  # the density outside the box is exp(-SPARE) smaller than the tolerance
-_NORMAL_TAIL = 3.29  # standard deviations outside which a normal variable has the mass _TAIL
-_TAIL = 1e-3  # mass outside a box, from which the box of the wanted depth is extrapolated
-LARGEST = {2: 120_000, 3: 600_000, 4: 2_500_000}  # grid points
+from nonsmooth.grids.mesh import box
+from nonsmooth.grids.mesh.axes import axes as axes_of
+from nonsmooth.grids.mesh.axes import variables
+from nonsmooth.grids.solver import ODD
+from nonsmooth.scenes.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -31,36 +27,67 @@ class Grid:
     Attributes
     ----------
     ends : dict
-        Half widths of the box.
+        Maps symbols to half widths of the box.
     levels : dict
-        Resolution level of each variable.
+        Maps symbols to resolution levels, see `mesh.axes`.
     margin : float
-        Elements outside the box, see `mesh.axes`.
+        Of elements outside the box, see `mesh.axes`.
     shift : float
-        Of `poisson.Split`.
+        Of `AlternatingSolver`.
     """
 
-    ends: dict
-    levels: dict
+    ends: Mapping[Symbol, float]
+    levels: Mapping[Symbol, int]
     margin: float = 0.0
     shift: float = 8.0
 
-    def raised(self, symbol, by=1):
+    def raised(self, symbol: Symbol) -> "Grid":
         """Return the grid with one variable resolved better."""
-        return replace(self, levels=self.levels | {symbol: self.levels[symbol] + by})
+        return replace(self, levels={**self.levels, symbol: self.levels[symbol] + 1})
+
+    def all_raised(self, by: int = 1) -> "Grid":
+        """Return the grid with all variables resolved better by so many levels."""
+        return replace(self, levels={symbol: level + by for symbol, level in self.levels.items()})
+
+    def at_level(self, level: int, margin: float = 0.0) -> "Grid":
+        """Return the grid with all variables at one level."""
+        return replace(self, levels=dict.fromkeys(self.levels, level), margin=margin)
+
+    def enlarged(self) -> "Grid":
+        """Return the grid on a larger box, to see whether its size matters."""
+        return replace(self, margin=tuning.TENSOR_GRIDS.margin)
 
 
-def solver(scene, grid):
-    """Discretise a scene; returns the axes and the solver of its Poisson equation."""
-    axes = mesh.axes(scene, grid.ends, grid.levels, grid.margin)
+def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], DirectSolver | AlternatingSolver]:
+    """Discretise a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    grid : Grid
+
+    Returns
+    -------
+    axes : dict
+        Maps symbols to `Axis`.
+    solver : PoissonSolver
+        Of the scene's Poisson equation.
+    """
+    axes = axes_of(scene, grid.ends, grid.levels, grid.margin)
     nodes = math.prod(len(axis.nodes) for axis in axes.values())
     mirrored = scene.is_odd() and nodes % 2 == 0  # no node is its own mirror image
     if len(axes) <= 2:
-        return axes, Direct(scene, axes, mirrored)
-    return axes, Split(scene, axes, mirrored, grid.shift)
+        return axes, DirectSolver(scene, axes, mirrored)
+    return axes, AlternatingSolver(scene, axes, mirrored, grid.shift)
 
 
-def fitted(scene, depth, level):
+def depth_for(tol: float) -> float:
+    """Return the depth of a box that is deep enough for a relative tolerance."""
+    return math.log(1 / tol) + tuning.TENSOR_GRIDS.spare
+
+
+def fitted(scene: Scene, depth: float, level: int) -> Grid:
     """Choose the box and the shift on coarse grids.
 
     Parameters
@@ -76,10 +103,13 @@ def fitted(scene, depth, level):
     -------
     Grid
     """
-    grid = Grid(mesh.box(scene, depth), dict.fromkeys(mesh.variables(scene), level))
-    for _ in range(_FITS):
+    chosen = tuning.TENSOR_GRIDS
+    grid = Grid(box.half_widths(scene, depth), dict.fromkeys(variables(scene), level))
+    for _ in range(chosen.fits):
         axes, solve = solver(scene, grid)
-        masses = solve.stationary(1e-2).reshape([len(axis.nodes) for axis in axes.values()])
+        masses = solve.stationary(chosen.fit_accuracy).reshape(
+            [len(axis.nodes) for axis in axes.values()]
+        )
         found = {
             symbol: _extrapolated(
                 axis.nodes,
@@ -88,30 +118,33 @@ def fitted(scene, depth, level):
             )
             for place, (symbol, axis) in enumerate(axes.items())
         }
-        ends = mesh.narrowed(scene, grid.ends, found)
+        ends = box.narrowed(scene, grid.ends, found)
         change = max(abs(math.log(ends[symbol] / grid.ends[symbol])) for symbol in ends)
         grid = replace(grid, ends=ends)
-        if change < 0.15:
+        if change < chosen.settled:
             break
     return _with_best_shift(scene, grid) if len(grid.levels) > 2 else grid
 
 
 def _extrapolated(nodes, masses, depth):
     """Half width for a depth, as if the tails beyond what coarse grids resolve were normal."""
+    chosen = tuning.TENSOR_GRIDS
     far = np.argsort(-np.abs(nodes))
     outside = np.cumsum(np.maximum(masses[far], 0.0))
-    edge = np.interp(_TAIL, outside, np.abs(nodes[far]))
-    return min(float(edge * math.sqrt(2 * depth) / _NORMAL_TAIL), 1.5 * nodes[-1])
+    edge = np.interp(chosen.tail, outside, np.abs(nodes[far]))
+    width = float(edge * math.sqrt(2 * depth) / chosen.normal_tail)
+    return min(width, chosen.widening * nodes[-1])
 
 
 def _with_best_shift(scene, grid):
     """Try which shift needs the fewest iterations."""
     count = {}
-    for shift in _SHIFTS:
+    for shift in tuning.ALTERNATING_DIRECTIONS.shifts:
         axes, solve = solver(scene, replace(grid, shift=shift))
         solve.most = min(count.values(), default=solve.most)
+        g = solve.fold(evaluate(scene.numerical_observable(), axes))
         try:
-            solve.solve(solve.fold(evaluate(scene.numerical_observable(), axes)), ODD, 1e-5)
+            solve.solve(g, ODD, tuning.ALTERNATING_DIRECTIONS.pilot_accuracy)
         except ToleranceError:
             continue
         count[shift] = solve.iterations
@@ -123,19 +156,12 @@ def _with_best_shift(scene, grid):
     return replace(grid, shift=min(count, key=count.get))
 
 
-def raised(grid, by=1):
-    """Return the grid with all variables resolved better."""
-    for symbol in grid.levels:
-        grid = grid.raised(symbol, by)
-    return grid
-
-
-def points(scene, grid):
+def points(scene: Scene, grid: Grid) -> int:
     """Return the number of nodes of a grid."""
-    axes = mesh.axes(scene, grid.ends, grid.levels)
+    axes = axes_of(scene, grid.ends, grid.levels)
     return math.prod(len(axis.nodes) for axis in axes.values())
 
 
-def affordable(scene, grid):
+def affordable(scene: Scene, grid: Grid) -> bool:
     """Whether a grid is small enough to be solved on."""
-    return points(scene, grid) <= LARGEST[len(grid.levels)]
+    return points(scene, grid) <= tuning.TENSOR_GRIDS.largest[len(grid.levels)]

@@ -1,33 +1,53 @@
-"""Scenes with two state variables on a ladder of grids, all variables alike.
+"""Grids of two variables that are refined in both, until two levels agree.
 
-A grid of level 0 has an error of 1e-3, each level gains a digit or two: for most requests two or
-three of them do what it takes more and larger ones to find out how fine each variable must be.
+A grid of level 0 has an error of about 1e-3, and each level gains a digit or two. For most requests
+two or three such grids suffice. To find out how fine each variable must be, as the combination
+technique does, would take more and larger ones.
 """
 
 import math
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from nonsmooth.grids import tensor_grid
-
-_HIGHEST = 4
-_SAFETY = 2.0  # times the difference of two levels
-GAIN = 30.0  # of a level, at most; a change may be smaller because the error changes sign
-_BOXED = 1  # level on which a larger box is tried; that matters less on finer ones
+from nonsmooth.grids import tuning
+from nonsmooth.grids.tensor_grid import Grid
+from nonsmooth.refine import Refined, until_agreement
+from nonsmooth.scenes.scene import Scene
 
 
-def applies(scene):
+@dataclass(frozen=True)
+class _Solved:
+    """Values on one grid, and what else than the grid makes inexact in them."""
+
+    level: int
+    grid: Grid
+    values: np.ndarray
+    inexact: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Error:
+    """The error of values, and whether levels converge so fast that a finer one may do."""
+
+    bound: np.ndarray
+    converging: bool
+
+
+def applies(scene: Scene) -> bool:
     """Whether the scene has two state variables and a finite n."""
     return scene.dimension == 2 and math.isfinite(scene.n)
 
 
-def climb(grid, solve, share):
+def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
     """Raise the level of a grid until two levels agree.
 
     Parameters
     ----------
-    grid : refinement.Grid
+    grid : Grid
+        Its levels do not matter.
     solve : callable
         Takes a grid; returns values and what else than the grid makes inexact in them, arrays of
         one shape.
@@ -36,28 +56,48 @@ def climb(grid, solve, share):
 
     Returns
     -------
-    (values, errors) or None
-        The error is twice the difference of the last two levels (or `GAIN` times less than twice
-        the one before, if that is more), twice what a larger box changes, and twice what is
-        inexact. None if the tolerance is out of reach, or levels do not converge: each must change
-        the values by half of what the one before did.
+    Refined
+        The error is the sum of three parts: twice the difference of the last two levels, twice
+        what a larger box changes, and twice what is inexact. Errors may change their sign between
+        levels, so that two of them agree by chance: the difference is taken to be at least that of
+        the two levels before, divided by the most that a level gains. It is not met if the
+        tolerance is out of reach, or if a level changes the values by more than half of what the
+        one before did.
     """
-    grid = replace(grid, levels=dict.fromkeys(grid.levels, 0))
-    values, _ = solve(grid)
-    solved, change, size = [(grid, values)], 0.0, math.inf
-    for left in reversed(range(_HIGHEST)):
-        grid, previous = tensor_grid.raised(grid), values
-        values, inexact = solve(grid)
-        change = np.maximum(np.abs(values - previous), change / GAIN)
-        larger, size = size, share(change, values)
-        if not size <= min(larger / 2, GAIN**left / _SAFETY):
-            return None
-        error = _SAFETY * change + 2 * inexact
-        if share(error, values) <= 1:
-            coarse, there = solved[min(_BOXED, len(solved) - 1)]
-            wider, _ = solve(replace(coarse, margin=tensor_grid.MARGIN))
-            error = error + 2 * np.abs(wider - there)
-            if share(error, values) <= 1:
-                return values, error
-        solved.append((grid, values))
-    return None
+    chosen = tuning.UNIFORM_REFINEMENT
+
+    def solved(level):
+        at = grid.at_level(level)
+        return _Solved(level, at, *solve(at))
+
+    def error(found):
+        last = found[-1]
+        changes = _changes([level.values for level in found])
+        size = share(changes[-1], last.values)
+        larger = share(changes[-2], found[-2].values) if len(changes) > 1 else math.inf
+        reach = chosen.gain ** (chosen.highest - last.level) / chosen.safety
+        bound = chosen.safety * changes[-1] + 2 * last.inexact
+        converging = bool(size <= min(larger / 2, reach))
+        if converging and share(bound, last.values) <= 1:
+            coarse = found[min(chosen.boxed, len(found) - 2)]
+            wider, _ = solve(coarse.grid.enlarged())
+            bound = bound + 2 * np.abs(wider - coarse.values)
+        return _Error(bound, converging)
+
+    result = until_agreement(
+        range(chosen.highest + 1),
+        solved,
+        error,
+        met=lambda last, error: error.converging and share(error.bound, last.values) <= 1,
+        hopeless=lambda last, error: not error.converging,
+    )
+    return Refined(result.value.values, result.error.bound, result.met)
+
+
+def _changes(values):
+    """Return what each level changes: at least what the one before did, over the most it gains."""
+    changes = []
+    for coarse, fine in pairwise(values):
+        gained = changes[-1] / tuning.UNIFORM_REFINEMENT.gain if changes else 0.0
+        changes.append(np.maximum(np.abs(fine - coarse), gained))
+    return changes

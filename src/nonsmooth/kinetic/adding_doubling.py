@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 
 _OPAQUE = 1e-10  # transmission of what is as good as a half space
 _MOST = 100  # doublings on the way there

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 
 _ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
 _SEPARATED, _POWERS = 30.0, 12  # slow eigenvalue over the others; steps until it is exact

@@ -15,7 +15,7 @@ from numpy.polynomial import legendre
 
 from nonsmooth.grids.elements import lagrange, lobatto
 from nonsmooth.grids.grading import mirrored
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.ordinates_plane import DROPPED, PlaneOrdinates
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization

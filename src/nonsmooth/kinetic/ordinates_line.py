@@ -11,7 +11,7 @@ import numpy as np
 
 from nonsmooth.grids.elements import continuous, lobatto
 from nonsmooth.grids.grading import distinct
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.line.kinks import isolated_zeros, sign_changes, switches
 from nonsmooth.line.potential import potential
 from nonsmooth.scenes import symbols

@@ -11,11 +11,13 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from nonsmooth.grids import mesh
+from nonsmooth.grids.direct_solver import DirectSolver
 from nonsmooth.grids.elements import continuous, discontinuous
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.grading import distinct, graded, mirrored
-from nonsmooth.grids.solvers import EVEN, ODD, Direct
+from nonsmooth.grids.mesh.axes import variables
+from nonsmooth.grids.mesh.edges import kinks
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import fitted
 
 _DEPTH = 14.0  # the density outside the box is of the order exp(-14) of its maximum
@@ -112,7 +114,7 @@ def plane_ordinates(scene, ends, level, time):
     PlaneOrdinates
     """
     axes = _axes(scene, ends, level, time)
-    solve = Direct(scene, axes, True)
+    solve = DirectSolver(scene, axes, True)
     g = solve.fold(evaluate(scene.numerical_observable(), axes))
     row, half = start_row(scene, axes), len(g)
     start = {parity: row[:half] + parity * row[half:][::-1] for parity in (ODD, EVEN)}
@@ -142,7 +144,7 @@ def _moving(solve, g, start, time):
 def _axes(scene, ends, level, time):
     driven_degree, degree, ratio, finest = _LEVELS[level]
     made = {}
-    for symbol in mesh.variables(scene):
+    for symbol in variables(scene):
         end = ends[symbol]
         edges = _positive(scene, symbol, end, ratio, finest, time)
         edges = mirrored(distinct(edges[(edges > 1e-12 * end) & (edges <= end)], 1e-9 * end))
@@ -155,7 +157,7 @@ def _axes(scene, ends, level, time):
 
 def _positive(scene, symbol, end, ratio, share, time):
     """Edges on one side of the origin."""
-    knot = mesh.knots(scene).get(symbol, 0.0)
+    knot = kinks(scene).get(symbol, 0.0)
     force = scene.observes_penalty_force and scene.mechanics.argument.name == "x"
     observed = symbol in scene.numerical_observable().free_symbols
     if symbol == scene.noise.driven:

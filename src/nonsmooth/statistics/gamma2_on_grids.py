@@ -5,12 +5,13 @@ from dataclasses import replace
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.estimate import require
-from nonsmooth.grids import mesh
+from nonsmooth.grids import tuning
 from nonsmooth.grids.combination_technique import Combination
 from nonsmooth.grids.generator import evaluate
-from nonsmooth.grids.solvers import EVEN, ODD
-from nonsmooth.grids.tensor_grid import LARGEST, MARGIN, SPARE, fitted, points, raised, solver
-from nonsmooth.grids.uniform_refinement import climb
+from nonsmooth.grids.mesh.box import narrowed
+from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.grids.tensor_grid import depth_for, fitted, points, solver
+from nonsmooth.grids.uniform_refinement import refined
 from nonsmooth.scenes.symbols import x, y
 
 # levels by the number of variables: of the grids for box and shift, of the coarsest for gamma^2
@@ -75,7 +76,7 @@ def growth_to(scene, tol):
     elastic = scene.mechanics.in_potential
     stiff, softer = _STIFF[elastic], 1e-2 * _STIFF[elastic]
     value, error, below, accuracy = _refined(scene.with_n(stiff), tol / 2)
-    fitted_below = replace(below, ends=mesh.narrowed(scene.with_n(softer), below.ends, below.ends))
+    fitted_below = replace(below, ends=narrowed(scene.with_n(softer), below.ends, below.ends))
     gap = growth_rate(scene.with_n(stiff), below, accuracy) - growth_rate(
         scene.with_n(softer), fitted_below, accuracy
     )
@@ -88,10 +89,10 @@ def growth_to(scene, tol):
 def _refined(scene, tol):
     """gamma^2, its error, the dearest of the combined grids, and the residual."""
     count = scene.dimension
-    coarse = fitted(scene, math.log(1 / tol) + SPARE, _FITTED[count])
-    coarse = raised(coarse, _COARSE[count] - _FITTED[count])
+    coarse = fitted(scene, depth_for(tol), _FITTED[count])
+    coarse = coarse.all_raised(_COARSE[count] - _FITTED[count])
     base, accuracy, residual = _iterated(scene, coarse, tol)
-    larger = growth_rate(scene, replace(coarse, margin=MARGIN), accuracy)
+    larger = growth_rate(scene, coarse.enlarged(), accuracy)
     directions = _directions(coarse)
 
     def grid(index):
@@ -104,7 +105,7 @@ def _refined(scene, tol):
         lambda index: growth_rate(scene, grid(index), accuracy),
         lambda index: points(scene, grid(index)),
     )
-    largest = LARGEST[count]
+    largest = tuning.TENSOR_GRIDS.largest[count]
     left = _WORK * largest
     while True:
         value = combination.value
@@ -177,8 +178,9 @@ def growth_on_ladder(scene, tol):
         value = growth_rate(scene, grid, tol)
         return value, _RESIDUE / 2 * tol * abs(value)
 
-    return climb(
-        fitted(scene, math.log(1 / tol) + SPARE, 1),
+    found = refined(
+        fitted(scene, depth_for(tol), 1),
         solve,
         lambda error, value: error / (tol * abs(value)),
     )
+    return (found.value, found.error) if found.met else None

@@ -9,7 +9,9 @@ from numpy.polynomial.legendre import leggauss
 from scipy.integrate import quad
 
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.grids import mesh, tensor_grid
+from nonsmooth.grids import tensor_grid
+from nonsmooth.grids.mesh.box import half_widths
+from nonsmooth.grids.mesh.edges import kinks
 from nonsmooth.line import quadrature
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
@@ -55,7 +57,7 @@ def invariant_density(scene, tol=None, points=None):
     tol = _EXACT[scene.dimension] if tol is None else tol
     if closed := closed_form(scene):
         if points is None:
-            ends = mesh.box(scene, math.log(1 / tol) + tensor_grid.SPARE)
+            ends = half_widths(scene, tensor_grid.depth_for(tol))
             points = {s.name: np.linspace(-end, end, _POINTS) for s, end in ends.items()}
         found = {(name,): closed[name](points[name])[0] for name in closed}
         error = {(name,): np.max(closed[name](points[name])[1]) for name in closed}
@@ -63,7 +65,7 @@ def invariant_density(scene, tol=None, points=None):
             found["y", "x"] = np.outer(found["y",], found["x",])
             error["y", "x"] = error["y",] * found["x",].max() + error["x",] * found["y",].max()
         return _dataset(found, error, points)
-    grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, 1)
+    grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     if points is None:
         points = {symbol.name: np.linspace(-end, end, _POINTS) for symbol, end in grid.ends.items()}
     names = [symbol.name for symbol in STATE_VARIABLES if symbol.name in scene.state]
@@ -75,7 +77,7 @@ def invariant_density(scene, tol=None, points=None):
             relative = max(error[key] / np.max(found[key]) for key in found)
             if relative <= tol:
                 break
-        grid = tensor_grid.raised(grid)
+        grid = grid.all_raised()
         if not tensor_grid.affordable(scene, grid):
             raise ToleranceError(
                 f"the invariant density has a relative error of {relative:.1e} on the finest grid, "
@@ -115,7 +117,7 @@ def closed_form(scene):
     inverse = 2 * scene.damping / scene.noise.sigma**2
     U = scene.potential_expression + scene.mechanics.added_potential
     energy = vectorised(U.subs(penalization, scene.n), (STATE_VARIABLES[-1],))
-    end = mesh.box(scene, _DEEP)[STATE_VARIABLES[-1]]
+    end = half_widths(scene, _DEEP)[STATE_VARIABLES[-1]]
     lowest = float(np.min(energy(np.linspace(-end, end, 2001))))
     wall, _, _ = scene.mechanics.penalty.at(scene.n)
     pieces = [-end, -wall, 0.0, wall, end]
@@ -176,7 +178,7 @@ def bin_averages(scene, edges, tol):
             other = fewer @ closed[name](coarse)[0]
             error[name] = np.abs(found[name] - other) + weights @ inexact
         return {name: (found[name], error[name]) for name in found}
-    grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, 1)
+    grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     found = None
     while True:
         previous, found = found, _averages_on(scene, grid, edges, tol * _RESIDUAL)
@@ -185,7 +187,7 @@ def bin_averages(scene, edges, tol):
             relative = max(np.max(error[name]) / np.max(found[name]) for name in found)
             if relative <= tol:
                 return {name: (found[name], error[name]) for name in found}
-        grid = tensor_grid.raised(grid)
+        grid = grid.all_raised()
         if not tensor_grid.affordable(scene, grid):
             raise ToleranceError(
                 f"the invariant density has a relative error of {relative:.1e} on the finest grid, "
@@ -206,7 +208,7 @@ def _averages_on(scene, grid, edges, accuracy):
 
 
 def _kinks(scene, name):
-    return np.array([k for s, k in mesh.knots(scene).items() if s.name == name for k in (-k, k)])
+    return np.array([k for s, k in kinks(scene).items() if s.name == name for k in (-k, k)])
 
 
 def _averaging(edges, cuts, count=None):

@@ -17,9 +17,9 @@ import numpy as np
 import scipy.linalg
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids import mesh, tensor_grid, uniform_refinement
+from nonsmooth.grids import tensor_grid, tuning, uniform_refinement
 from nonsmooth.grids.generator import evaluate, start_row
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 
 _POLES = (0.0, 10.0)  # larger ones resolve earlier times, and what the grid does not
 _STEPS = range(12, 85, 6)  # dimensions of the Krylov space that are compared
@@ -68,9 +68,11 @@ def moments(scene, times, tol):
         return np.max(error[1] / (tol * scale))
 
     grid = _first_grid(scene, tol)
-    last, error = uniform_refinement.climb(grid, solve, share) or _refined(
-        scene, grid, solve, share
-    )
+    refined = uniform_refinement.refined(grid, solve, share)
+    if refined.met:
+        last, error = refined.value, refined.error
+    else:
+        last, error = _refined(scene, grid, solve, share)
     # w is the difference of terms as large as the standard deviation
     w, v = np.abs(last)
     error += _ROUNDING * np.array([w + np.sqrt(v), v + w**2])
@@ -96,12 +98,15 @@ def _refined(scene, grid, solve, share):
         finer = grid
         for symbol in coarse:
             finer = finer.raised(symbol)
-        if not coarse or not _affordable(scene, tensor_grid.raised(finer)):
+        if not coarse or not _affordable(scene, finer.all_raised()):
             break
-        grid, least = finer, least | {s: changes[s] / uniform_refinement.GAIN for s in coarse}
+        grid, least = (
+            finer,
+            least | {s: changes[s] / tuning.UNIFORM_REFINEMENT.gain for s in coarse},
+        )
         value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
-    last, inexact = solve(tensor_grid.raised(grid))
-    beyond = np.abs(solve(replace(grid, margin=tensor_grid.MARGIN))[0] - value)
+    last, inexact = solve(grid.all_raised())
+    beyond = np.abs(solve(grid.enlarged())[0] - value)
     return last, np.maximum(np.abs(last - value), sum(changes.values())) + 2 * (beyond + inexact)
 
 
@@ -116,7 +121,7 @@ def _with_neighbours(times):
 
 
 def _first_grid(scene, tol):
-    grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, 1)
+    grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     ends = {
         symbol: max(end, _AROUND * abs(scene.start.get(symbol.name, 0.0)))
         for symbol, end in grid.ends.items()
@@ -125,11 +130,7 @@ def _first_grid(scene, tol):
 
 
 def _affordable(scene, grid):
-    return (
-        math.prod(len(axis.nodes) for axis in mesh.axes(scene, grid.ends, grid.levels).values())
-        <= _LARGEST
-        and max(grid.levels.values()) <= _FINEST
-    )
+    return tensor_grid.points(scene, grid) <= _LARGEST and max(grid.levels.values()) <= _FINEST
 
 
 def _on(scene, grid, times, allowed):

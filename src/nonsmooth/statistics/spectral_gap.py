@@ -10,8 +10,8 @@ import scipy.sparse.linalg as spla
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
-from nonsmooth.grids import tensor_grid
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids import tensor_grid, tuning
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.line import eigenfunctions
 
 _WANTED = 6  # eigenvalues computed; the slowest pair may be complex
@@ -50,7 +50,7 @@ def spectral_gap(scene, tol=1e-6):
     if scene.is_line:
         solve, levels = _of_polynomials, (8, 12, 16, 20, 24)
     elif scene.dimension == 2 and not math.isinf(scene.n):
-        grid = tensor_grid.fitted(scene, math.log(1 / tol) + tensor_grid.SPARE, _FIT)
+        grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), _FIT)
 
         def solve(scene, level, margin=0.0):
             levels = dict.fromkeys(grid.levels, level)
@@ -76,7 +76,9 @@ def spectral_gap(scene, tol=1e-6):
                 beyond = 0.0
             else:
                 coarse = next(unseen)
-                beyond = 2 * abs(solve(scene, coarse, tensor_grid.MARGIN)[0] - found[coarse])
+                beyond = 2 * abs(
+                    solve(scene, coarse, tuning.TENSOR_GRIDS.margin)[0] - found[coarse]
+                )
             if error + beyond <= tol * value:
                 seconds = time.perf_counter() - began
                 return Estimate(value, error + beyond, "spectral elements", seconds)

@@ -15,7 +15,7 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.generator import evaluate
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.theory import lyapunov
 
 _DEPTH = 20.0  # the density at the edge of the box is exp(-_DEPTH) of its maximum

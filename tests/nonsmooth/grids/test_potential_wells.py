@@ -1,6 +1,7 @@
 """Scenes that mix slowly: right as long as they are solved at all, and refused beyond."""
 
 import importlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +9,9 @@ from scipy.integrate import cumulative_simpson, simpson
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids import potential_wells
+from nonsmooth.grids import potential_wells, tuning
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.symbols import eta
-from nonsmooth.statistics import gamma2_on_grids
 
 
 def langevin_growth(noise):
@@ -74,7 +74,7 @@ def test_rate_of_jumps_between_two_wells():
 
 def test_a_rate_that_is_out_of_reach_is_refused(monkeypatch):
     """Thirty kT: one transition in 1e12; the message tells so."""
-    monkeypatch.setattr(gamma2_on_grids, "LARGEST", {2: 10_000})
+    monkeypatch.setattr(tuning, "TENSOR_GRIDS", replace(tuning.TENSOR_GRIDS, largest={2: 10_000}))
     scene = ns.Scene("obstacle", potential="x**2/2 + 15*exp(-4*x**2)", observable="x")
     with pytest.raises(ToleranceError, match=r"mixes slowly, g stays correlated for some \de\+"):
         ns.asymptotic_variance(scene, tol=1e-3)

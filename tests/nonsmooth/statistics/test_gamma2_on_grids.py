@@ -8,7 +8,8 @@ from scipy.integrate import quad
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids import elements, generator, mesh, tensor_grid
+from nonsmooth.grids import elements, generator, tensor_grid
+from nonsmooth.grids.mesh.axes import axes as axes_of
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x, y
 
 
@@ -128,7 +129,7 @@ def test_a_bounded_integral_is_refused():
 def test_the_generator_is_exact_on_polynomials():
     """A_n f of a quadratic f at the nodes, computed symbolically; linear drift between kinks."""
     scene = ns.Scene("elasto_plastic", n=10, potential="x**2/2")
-    axes = mesh.axes(scene, {y: 3.0, x: 1.5}, {y: 1, x: 1})
+    axes = axes_of(scene, {y: 3.0, x: 1.5}, {y: 1, x: 1})
     matrix = generator.assemble(scene, axes)
     f = x**2 + x * y + y**2
     drift = scene.numerical_drift()

@@ -21,11 +21,10 @@ FALSE_ALARM = 1e-5
 
 def test_gibbs_density_is_the_grids():
     """Within the difference of two grids and 1e-3 of the maximum."""
-    grid = tensor_grid.fitted(OBSTACLE, math.log(1e3) + tensor_grid.SPARE, 1)
+    grid = tensor_grid.fitted(OBSTACLE, tensor_grid.depth_for(1e-3), 1)
     points = {"y": np.linspace(-3, 3, 61), "x": np.linspace(-1.2, 1.2, 61)}
     coarse, fine = (
-        density._on(OBSTACLE, tensor_grid.raised(grid, by), ["y", "x"], points, None)
-        for by in (2, 3)
+        density._on(OBSTACLE, grid.all_raised(by), ["y", "x"], points, None) for by in (2, 3)
     )
     for name, exact in closed_form(OBSTACLE).items():
         value, error = exact(points[name])

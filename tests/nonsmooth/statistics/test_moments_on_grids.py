@@ -10,6 +10,8 @@ from numpy.polynomial.legendre import leggauss
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids import tensor_grid
+from nonsmooth.grids.generator import evaluate
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.statistics import moments_on_grids
@@ -142,17 +144,17 @@ def test_projection_against_the_whole_exponential():
     times = np.array([0.05, 0.6, 4.0, 50.0])
     found, inexact = moments_on_grids._on(scene, grid, times, 1e-8)
     axes, solver = tensor_grid.solver(scene, grid)
-    g = solver.fold(tensor_grid.evaluate(scene.numerical_observable(), axes))
+    g = solver.fold(evaluate(scene.numerical_observable(), axes))
     size = len(g)
     whole = np.zeros((2 * size + 1,) * 2)
-    whole[:size, :size] = solver.matrix(tensor_grid.EVEN).toarray()
+    whole[:size, :size] = solver.matrix(EVEN).toarray()
     whole[:size, size:-1] = 2 * np.diag(g)
-    whole[size:-1, size:-1] = solver.matrix(tensor_grid.ODD).toarray()
+    whole[size:-1, size:-1] = solver.matrix(ODD).toarray()
     whole[size:-1, -1] = g
     for k, tau in enumerate(times):
         q, w = np.split(scipy.linalg.expm(tau * whole)[:-1, -1], 2)
         at = moments_on_grids._at_start(scene, axes)
-        exact = at(solver, q[None], tensor_grid.EVEN) - at(solver, w[None], tensor_grid.ODD) ** 2
+        exact = at(solver, q[None], EVEN) - at(solver, w[None], ODD) ** 2
         assert abs(found[1, k] - exact[0]) <= 2 * inexact[1, k] + 1e-9 * (1 + tau)
 
 

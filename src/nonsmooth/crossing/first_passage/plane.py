@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.adding_doubling import half_space, slab
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates

@@ -20,7 +20,7 @@ from nonsmooth.crossing.first_passage.plane import Plane
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import discontinuous
 from nonsmooth.grids.grading import graded
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import plane_ordinates

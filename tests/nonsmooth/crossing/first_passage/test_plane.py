@@ -9,7 +9,7 @@ import nonsmooth as ns
 from nonsmooth.crossing.first_passage import plane as plane
 from nonsmooth.crossing.first_passage.time_stepping import March
 from nonsmooth.errors import SceneError
-from nonsmooth.grids.solvers import EVEN, ODD
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
 from nonsmooth.kinetic.adding_doubling import slab
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates

@@ -1,23 +1,19 @@
-"""The Poisson equation -A u = f - E f (eq. poisson) on a tensor grid, solved by linear algebra.
+"""The Poisson equation on tensor grids with up to two variables, by sparse factorisation."""
 
-Up to two variables, by one sparse factorisation. Beyond, the generator is the sum of the noise's
-own generator L and of the transport T by the oscillator's drift, which does not mix values of the
-noise: (a - T)^-1 (a - L)^-1, one step of alternating directions, preconditions GMRES.
-
-Where drift and observable are odd, solutions are odd or even in the state, and half of the grid
-is enough.
-"""
+from collections.abc import Mapping
 
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from sympy import Symbol
 
+from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
+from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.scenes.scene import Scene
 
-ODD, EVEN = -1, 1
 
-
-def factorise(matrix):
+def factorise(matrix: sp.sparray) -> spla.SuperLU:
     """Sparse LU of a matrix whose pattern is symmetric and whose diagonal is not small."""
     return spla.splu(
         matrix.tocsc(),
@@ -40,35 +36,37 @@ class _Factors:
         return solution + self.lu.solve(right - matrix @ solution, trans=trans)
 
 
-class Direct:
-    """Solver by sparse factorisation.
+class DirectSolver:
+    """Solver by sparse factorisation; see `solver.PoissonSolver` for what it promises.
+
+    Factors are kept, so that further solutions are cheap.
 
     Parameters
     ----------
     scene : Scene
         With a finite n.
     axes : dict
-        See `mesh.axes`.
+        Maps symbols to axes, see `mesh.axes`.
     mirrored : bool
-        Whether to use that drift and observable are odd.
+        Whether to use that drift and observable are odd. No node may be its own mirror image.
     """
 
-    def __init__(self, scene, axes, mirrored):
+    def __init__(self, scene: Scene, axes: Mapping[Symbol, Axis], mirrored: bool):
         self.generator = assemble(scene, axes)
         self.size = self.generator.shape[0]
         self.mirrored = mirrored
         self._factors = {}
 
-    def unfold(self, half, parity):
+    def fold(self, whole: np.ndarray) -> np.ndarray:
+        """Restrict a function to the first half of the grid."""
+        return whole[: self.size // 2] if self.mirrored else whole
+
+    def unfold(self, half: np.ndarray, parity: int) -> np.ndarray:
         """Continue a function from half of the grid to all of it."""
         return np.concatenate([half, parity * half[::-1]]) if self.mirrored else half
 
-    def fold(self, whole):
-        """Restrict a function to the half of the grid that is solved on."""
-        return whole[: self.size // 2] if self.mirrored else whole
-
-    def matrix(self, parity):
-        """Return the generator on odd or even functions."""
+    def matrix(self, parity: int) -> sp.csr_array:
+        """Return the generator on odd or even functions, folded."""
         if not self.mirrored:
             return self.generator
         half = self.size // 2
@@ -77,44 +75,32 @@ class Direct:
         ).tocsr()
 
     def _factor(self, parity):
-        # constants are in the kernel of A, and are not odd
         if parity not in self._factors:
             matrix = -self.matrix(parity)
-            if parity == EVEN or not self.mirrored:
+            if parity == EVEN or not self.mirrored:  # constants, which are even, are in its kernel
                 ones = np.ones((matrix.shape[0], 1))
                 matrix = sp.block_array([[matrix, ones], [ones.T / len(ones), None]])
             self._factors[parity] = _Factors(matrix)
         return self._factors[parity]
 
-    def solve(self, values, parity, _accuracy=None):
-        """Solve -A u = f - E f.
-
-        Parameters
-        ----------
-        values : numpy.ndarray
-            f on the (half) grid.
-        parity : {ODD, EVEN}
-            Of f; ignored unless mirrored.
-
-        Returns
-        -------
-        u : numpy.ndarray
-        mean : float
-        """
+    def solve(
+        self, values: np.ndarray, parity: int, accuracy: float | None = None
+    ) -> tuple[np.ndarray, float]:
+        """Solve -A u = f - E f; the accuracy is that of rounding."""
         if self.mirrored and parity == ODD:
             return self._factor(ODD).solve(values), 0.0
         solution = self._factor(EVEN).solve(np.append(values, 0.0))
         return solution[:-1], float(solution[-1])
 
-    def resolvent(self, values, parity, shift):
-        """Apply (shift - A)^-1, shift > 0, to a function on the (half) grid."""
+    def resolvent(self, values: np.ndarray, parity: int, shift: float) -> np.ndarray:
+        """Apply (shift - A)^-1, shift > 0, to a folded function."""
         key = shift, parity if self.mirrored else EVEN
         if key not in self._factors:
             matrix = self.matrix(parity)
             self._factors[key] = factorise(shift * sp.eye_array(matrix.shape[0]) - matrix)
         return self._factors[key].solve(values)
 
-    def stationary(self, _accuracy=None):
+    def stationary(self, accuracy: float | None = None) -> np.ndarray:
         """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
         one = np.zeros(self.fold(np.empty(self.size)).size + 1)
         one[-1] = 1.0

@@ -1,0 +1,82 @@
+"""The axes of a tensor grid: one for each variable of a scene's state."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from sympy import Symbol
+
+from nonsmooth.grids import tuning
+from nonsmooth.grids.elements import Axis, continuous, discontinuous
+from nonsmooth.grids.mesh.edges import (
+    element_edges,
+    has_walls,
+    is_smooth,
+    kinks,
+    potentials,
+    resolving,
+)
+from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import eta, x, y, zeta
+
+# the forcing comes first: for each of its values, the oscillator's equations are solved
+ORDER = (eta, zeta, y, x)
+
+
+def variables(scene: Scene) -> tuple[Symbol, ...]:
+    """Return the symbols of the scene's state in the order of the axes."""
+    return tuple(symbol for symbol in ORDER if symbol.name in scene.state)
+
+
+def axes(
+    scene: Scene,
+    ends: Mapping[Symbol, float],
+    levels: Mapping[Symbol, int],
+    margin: float = 0.0,
+) -> dict[Symbol, Axis]:
+    """Discretise every variable of the state.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    ends : dict
+        Half widths, see `box.half_widths`.
+    levels : dict
+        Maps symbols to resolution levels, integers >= 0. Each level raises the polynomial degree
+        and, with two variables, the number of layers towards a kink.
+    margin : float
+        Width of an element that is added on either side of the box, relative to the half width, to
+        see whether the box is too small.
+
+    Returns
+    -------
+    dict
+        Maps symbols, in the order of the axes, to `Axis`.
+    """
+    made, wells = {}, potentials(scene, ends)
+    for symbol in variables(scene):
+        level, end = levels[symbol], ends[symbol]
+        edges = element_edges(scene, symbol, end, _layers(symbol, levels))
+        if symbol in wells:
+            potential, temperature = wells[symbol]
+            edges = resolving(edges, vectorised(potential, (symbol,)), temperature)
+        if margin:
+            # beyond a wall its own depth counts, not the distance between the walls
+            scale = end - kinks(scene)[x] if symbol == x and has_walls(scene, end) else end
+            edges = np.concatenate([[-end - margin * scale], edges, [end + margin * scale]])
+        if symbol == scene.noise.driven:
+            # odd degrees where there is no kink keep the number of nodes even
+            stride = 2 if is_smooth(scene, symbol, end) else 1
+            made[symbol] = continuous(edges, 3 + stride * level)
+        else:
+            made[symbol] = discontinuous(edges, 2 + level)
+    return made
+
+
+def _layers(symbol, levels):
+    """Return the number of layers towards a kink; they are dear with many variables."""
+    if len(levels) <= 2:
+        return 2 + levels[symbol]
+    chosen = tuning.ELEMENTS
+    return chosen.more_layers if symbol in (eta, y) else chosen.few_layers

@@ -1,0 +1,123 @@
+"""The box outside which the invariant density of a scene is too small to matter."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from sympy import Symbol
+
+from nonsmooth.grids import tuning
+from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import eta, x, y, zeta
+
+
+def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
+    """Half widths of a box that holds the invariant density, possibly with much to spare.
+
+    Those of colored noise come from its own density. Those of the oscillator come from the energy
+    that the noise can feed into a damped linear one.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    depth : float
+        Outside, the density is of the order exp(-depth) of its maximum.
+
+    Returns
+    -------
+    dict
+        Maps the symbols of the state to half widths, "1".
+    """
+    ends, noise = {}, scene.noise
+    if noise.kind == "white":
+        power = noise.sigma**2
+    else:
+        ends = _of_noise(noise, depth)
+        # the spectral density of the forcing is at most 2 var(eta) / (relaxation rate), of which
+        # 2 widths^2 / depth is an estimate
+        power = 4 * ends[eta] ** 2 / depth
+    speed = math.sqrt(power * depth / scene.damping)
+    if eta in ends:
+        speed = min(speed, 2 * ends[eta] / scene.damping)
+    ends[y] = speed
+    if "x" in scene.state:
+        ends[x] = _of_displacement(scene, speed, ends.get(eta, 0.0))
+    return ends
+
+
+def narrowed(
+    scene: Scene, ends: Mapping[Symbol, float], found: Mapping[Symbol, float]
+) -> dict[Symbol, float]:
+    """Replace half widths of the oscillator's variables by what a solution has shown.
+
+    Between walls, the half width of the displacement follows from that of the velocity. Elsewhere
+    it is at least what the velocity allows: a coarse solution does not see a well that holds
+    little mass.
+
+    Parameters
+    ----------
+    scene : Scene
+    ends : dict
+        Half widths of all variables, as from `half_widths`.
+    found : dict
+        Half widths of y and x as seen in a solution.
+
+    Returns
+    -------
+    dict
+        Half widths of all variables.
+    """
+    ends = {**ends, y: found[y]}
+    if x in ends:
+        walls = scene.mechanics.argument == x
+        allowed = _of_displacement(scene, found[y], ends.get(eta, 0.0))
+        ends[x] = allowed if walls else max(allowed, found[x])
+    return ends
+
+
+def _of_noise(noise, depth):
+    """Half widths of the variables of colored noise."""
+    search = tuning.BOX
+    reach = np.linspace(0, search.farthest_noise, search.noise_points)[1:]
+    if noise.kind == "langevin":
+        v = vectorised(noise.potential_expression, (eta,))
+        allowed = depth * noise.sigma**2 / 2
+        both = np.minimum(v(reach), v(-reach)) - min(v(reach).min(), v(-reach).min(), v(0.0))
+        return {eta: _last_below(reach, both, allowed)}
+    energy = vectorised(noise.energy, (eta, zeta))
+    angle = np.linspace(0, 2 * np.pi, search.rays, endpoint=False)
+    radius = reach[:: search.ray_stride, None]
+    rays = radius * np.cos(angle), radius * np.sin(angle)
+    H = energy(*rays)
+    near = np.hypot(*rays) < search.near
+    dissipation = vectorised(noise.dissipation, (eta, zeta))(*rays)
+    weakest = max(np.min(dissipation[near]), search.least_dissipation)
+    inside = H - H.min() <= depth * noise.sigma**2 / (2 * weakest)
+    return {
+        symbol: search.spare * float(np.max(np.abs(ray)[inside], initial=search.least))
+        for symbol, ray in zip((eta, zeta), rays, strict=True)
+    }
+
+
+def _last_below(reach, values, allowed):
+    """Return the largest of increasing distances at which a value is allowed, or the first."""
+    below = np.flatnonzero(values <= allowed)
+    return float(reach[below[-1]]) if len(below) else float(reach[0])
+
+
+def _of_displacement(scene, speed, forcing):
+    """Half width of the displacement, given those of the velocity and of the forcing."""
+    search = tuning.BOX
+    kink, _, outer = scene.mechanics.penalty.at(scene.n)
+    if scene.mechanics.is_plastic:  # inward drift beyond, for every velocity
+        return kink + search.spare * speed / outer
+    # the potential energy there is the kinetic energy of the fastest velocity
+    reach = np.geomspace(*search.displacements)
+    U = vectorised(scene.potential_expression, (x,))
+    height = np.minimum(U(reach), U(-reach)) - min(U(reach).min(), U(-reach).min())
+    free = _last_below(reach, height, speed**2 / 2 + forcing)
+    if scene.mechanics.in_potential:
+        return min(free, kink + speed / math.sqrt(outer) + forcing / outer)
+    return free
