@@ -7,7 +7,9 @@ import yaml
 from conftest import ROOT
 
 from nonsmooth.line.dry_friction import friction_variance
-from reproduction.errata import ERRATA, Evidence
+from reproduction.errata.entries import ERRATA
+from reproduction.errata.record import Evidence
+from reproduction.printed import numbered
 
 LABELS = [erratum.label for erratum in ERRATA]
 
@@ -45,11 +47,16 @@ def test_texts_are_balanced(evidence):
         for text in (erratum.place, erratum.wrong, erratum.right, quantity):
             assert text.count("$") % 2 == 0
             assert text.count("{") == text.count("}")
+            assert "\\ref" not in numbered(text)  # every label has a number
 
 
 @pytest.mark.parametrize(
     ("relation", "right", "wrong"),
-    [("equal", (0.9, 1.1), (0.8, 1.2)), ("bound", (0.9, 5), (0.8,)), ("below", (-5, 1.1), (1.2,))],
+    [
+        ("equal", (0.9, 1.1), (0.8, 1.2)),
+        ("at least", (0.9, 5), (0.8,)),
+        ("at most", (-5, 1.1), (1.2,)),
+    ],
 )
 def test_relations(relation, right, wrong):
     """Equal, an upper bound, a lower bound, each within the error."""

@@ -3,6 +3,8 @@
 
 rule errata:
     """Evaluate the errata, printed against mended"""
+    input:
+        printed="paper/printed.yaml",
     output:
         "<results>/errata/errata.nc",
     script:

@@ -2,8 +2,9 @@
 
 from nonsmooth.errors import CheckError
 from reproduction import artifact
-from reproduction.errata import ERRATA
+from reproduction.errata.entries import ERRATA
 from reproduction.jobs import produce
+from reproduction.printed import numbered
 
 TEXTS = (
     ("place", "where in the paper"),
@@ -30,23 +31,26 @@ def evaluate():
         if evidence.holds(evidence.printed) or not evidence.holds(evidence.mended):
             raise CheckError(
                 f"erratum {label}: printed {evidence.printed:.6g}, mended {evidence.mended:.6g}, "
-                f"reference {evidence.reference:.6g}: the entry of src/reproduction/errata.py "
-                "is wrong"
+                f"reference {evidence.reference:.6g}: mend the entry in "
+                "src/reproduction/errata"
             )
 
     def values(name):
         return "entry", [getattr(evidence, name) for evidence in found.values()]
+
+    def texts(name, records):
+        return "entry", [numbered(getattr(record, name)) for record in records]
 
     return artifact.dataset(
         "Errata of the paper",
         "one quantity for each entry by the printed formula, the mended one, and independently",
         {
             "entry": ("entry", list(found), "number of the entry"),
-            "quantity": (*values("quantity"), "what is evaluated, LaTeX"),
+            "quantity": (*texts("quantity", found.values()), "what is evaluated, LaTeX"),
             "relation": (*values("relation"), "what a right value is to the reference"),
             "kind": (*values("kind"), "kind of evidence"),
         }
-        | {name: ("entry", [getattr(e, name) for e in ERRATA], text) for name, text in TEXTS},
+        | {name: (*texts(name, ERRATA), meaning) for name, meaning in TEXTS},
         {
             "printed": (*values("printed"), "by the printed formula"),
             "mended": (*values("mended"), "by the mended formula"),

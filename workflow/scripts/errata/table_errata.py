@@ -4,7 +4,7 @@ import pandas as pd
 
 from reproduction.tables import scientific, typeset
 
-RELATION = {"equal": "", "bound": r"\geq ", "below": r"\leq "}
+RELATION = {"equal": "", "at least": r"\geq ", "at most": r"\leq "}
 WIDTHS = ("auto", "1.2fr", "2fr", "2fr", "1.8fr", *["auto"] * 5)
 TEXTS = ("place", "wrong", "right", "quantity", "relation", "kind")
 
