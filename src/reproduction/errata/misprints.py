@@ -4,9 +4,9 @@ import numpy as np
 import sympy
 
 from nonsmooth.scenes import equations
-from nonsmooth.scenes.symbols import eta, zeta
 from nonsmooth.scenes.noises import NOISES, KanaiTajimi, hamiltonian_drift
 from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import eta, zeta
 from nonsmooth.theory import lyapunov
 from reproduction.errata.record import Evidence, erratum
 

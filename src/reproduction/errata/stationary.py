@@ -8,8 +8,8 @@ import sympy
 from scipy.integrate import quad
 
 from nonsmooth.scenes import equations
-from nonsmooth.scenes.symbols import x, y
 from nonsmooth.scenes.noises import KanaiTajimi, OrnsteinUhlenbeck
+from nonsmooth.scenes.symbols import x, y
 from nonsmooth.theory import lyapunov
 from reproduction.errata.record import Evidence, erratum
 

@@ -7,9 +7,9 @@ import scipy.linalg
 from scipy.integrate import quad
 
 from nonsmooth.scenes import equations
-from nonsmooth.scenes.symbols import eta, x, y, zeta
 from nonsmooth.scenes.noises import KanaiTajimi
 from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import eta, x, y, zeta
 from nonsmooth.theory import assumptions, drift_bounds, lyapunov
 from reproduction.errata.record import Evidence, erratum
 
