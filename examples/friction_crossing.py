@@ -1,0 +1,38 @@
+r"""
+How likely it has slid too far
+==============================
+
+A mass under dry friction and white noise slides. With which probability has it been at the
+distance :math:`b\sqrt p` from its start before the time :math:`pT`? Without Monte Carlo, by Monte
+Carlo with its error, and the limit :math:`p \to \infty`.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import nonsmooth as ns
+
+scene = ns.Scene("friction", n=100)
+horizons = np.linspace(0.5, 10, 39)
+solved = ns.crossing_probability(scene, threshold=0.6, horizons=horizons, p=10)
+sampled = ns.crossing_probability(scene, 0.6, horizons, p=10, paths=5000, step=0.02, seed=1)
+limit = ns.crossing_probability(scene, 0.6, horizons, method="asymptotic")
+
+figure, axis = plt.subplots(figsize=(6, 3.6), layout="constrained")
+w, error = sampled["probability"], 2 * sampled["probability_error"]
+axis.fill_between(horizons, w - error, w + error, color="#56B4E9", label="Monte Carlo, 2 s.e.")
+axis.plot(horizons, solved["probability"], color="#0072B2", label="deterministic")
+axis.plot(horizons, limit["probability"], "k--", label=r"limit $p \to \infty$")
+axis.set(xlabel="T", ylabel=r"$W(\sqrt{p}\,b,\, p\,T)$ at p = 10")
+axis.legend()
+plt.show()
+
+# %%
+# Every value has its error. That of the deterministic method is an estimate by two resolutions.
+
+for k in (6, 22, 38):
+    print(
+        f"T = {horizons[k]:4.1f}: {float(solved['probability'][k]):.8f} "
+        f"+- {float(solved['probability_error'][k]):.0e}, Monte Carlo "
+        f"{float(sampled['probability'][k]):.3f} +- {float(sampled['probability_error'][k]):.3f}"
+    )
