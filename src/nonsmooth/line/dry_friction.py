@@ -1,13 +1,15 @@
-"""gamma^2 of dry friction with white noise and g(y) = y, in closed form up to one quadrature."""
+"""gamma^2 of dry friction with white noise and g(y) = y, in closed form but for one integral."""
 
 import math
 
 import numpy as np
 import scipy
 
+from nonsmooth.line import tuning
 
-def friction_variance(n, damping=1.0):
-    """Asymptotic variance gamma_n^2 of int_0^t Y_s ds, with its error (Theorem thm3).
+
+def friction_variance(n: float, damping: float = 1.0) -> tuple[float, float]:
+    """Return gamma_n^2, the limit of Var(int_0^t Y_s ds) / t (Theorem thm3), with its error.
 
     With m(y) = exp(-C_b y^2 - 2 a_n(y)) the Poisson equation reads (m u')' = -2 y m, so that
     u' = 2/m int_y^inf s m(s) ds is elementary up to one scaled complementary error function,
@@ -23,9 +25,10 @@ def friction_variance(n, damping=1.0):
     Returns
     -------
     value, error : float
-        The error is the quadrature's own estimate plus rounding, which grows as C_b -> 0, where
+        The error is the quadrature's own estimate plus rounding. Rounding grows as C_b -> 0, where
         u' is the small difference of two terms.
     """
+    settings = tuning.DRY_FRICTION
     knot = 0.0 if math.isinf(n) else 1 / n
     root = math.sqrt(damping)
 
@@ -45,18 +48,22 @@ def friction_variance(n, damping=1.0):
         inner = (density_inside(y) - density_inside(knot)) / (damping + n)
         return (inner + at_knot) / density_inside(y)
 
-    end = knot + min(8.5 / root, 40.0)  # the density there is below 1e-31 of its maximum
+    end = knot + min(settings.reach / root, settings.farthest)
     moments = np.zeros((2, 2))
     pieces = [(knot, end, slope_outside, density_outside)]
     if knot > 0:
-        pieces.append((0.0, min(knot, 8.5 / math.sqrt(damping + n)), slope_inside, density_inside))
+        pieces.append(
+            (0.0, min(knot, settings.reach / math.sqrt(damping + n)), slope_inside, density_inside)
+        )
     for left, right, slope, density in pieces:
         for row, integrand in enumerate((lambda y, s=slope, d=density: s(y) ** 2 * d(y), density)):
             moments[row] += scipy.integrate.quad(
-                integrand, left, right, epsabs=0, epsrel=1e-13, limit=200
+                integrand, left, right, epsabs=0, epsrel=settings.tolerance, limit=200
             )
     (square, square_error), (mass, mass_error) = moments
     value = square / mass
     return value, value * (
-        square_error / square + mass_error / mass + 8 * np.finfo(float).eps * (1 + 1 / damping)
+        square_error / square
+        + mass_error / mass
+        + settings.rounding * np.finfo(float).eps * (1 + 1 / damping)
     )

@@ -1,19 +1,24 @@
 """The paper's finite-difference scheme (its appendix C), with the indices mended.
 
-Backward Euler in time, centred differences in space on [-L, L], one-sided Neumann rows. The
-right-hand sides use W^{k-1} and V^{k-1}, not step k as printed, and the source of V is
-(D W^k)^2. First order in time; second order in space on a grid fitted to the kinks at +-1/n.
+It is backward Euler in time and has centred differences in space on [-L, L], with one-sided
+Neumann rows at the ends. The right-hand sides take W^{k-1} and V^{k-1}, where step k is printed,
+and the source of V is (D W^k)^2. The scheme is of first order in time and, on a grid with nodes on
+the kinks at +-1/n, of second order in space.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgttrf, dgttrs
 
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.scene import Scene
 
 
-def moments(scene, times, half_width, nodes, time_step):
+def moments(
+    scene: Scene, times: ArrayLike, half_width: float, nodes: int, time_step: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Solve eqs. (PDEw) and (PDEv) and return w and v at the starting point.
 
     Parameters
@@ -64,10 +69,13 @@ def moments(scene, times, half_width, nodes, time_step):
         slope[1:-1] = (w[2:] - w[:-2]) / (2 * width)
         v = solve(time_step * scene.noise.sigma**2 * slope**2 + v)
         history[k] = w[node], v[node]
-    return tuple(np.array([history[k] for k in outputs]).T)
+    at_start = np.array([history[k] for k in outputs])
+    return at_start[:, 0], at_start[:, 1]
 
 
-def system(scene, half_width, nodes, time_step):
+def system(
+    scene: Scene, half_width: float, nodes: int, time_step: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Assemble the matrix M_Dt and the source Dt G_i.
 
     Parameters
@@ -116,14 +124,17 @@ def system(scene, half_width, nodes, time_step):
     )
 
 
-def moments_with_error(scene, times, half_width, nodes, time_step):
+def moments_with_error(
+    scene: Scene, times: ArrayLike, half_width: float, nodes: int, time_step: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return w, v and an error estimate of each.
 
-    The solution is repeated with twice the time step, with twice the mesh width, and with that
-    on half the domain. The scheme is of first order in time, so that the first difference is the
-    error's leading term; in space it is at least of first order, whatever the position of the
-    kinks, so that the second difference bounds it; the domain's error falls faster than
-    exponentially with L. The sum of the differences is doubled to cover the higher orders.
+    The problem is solved again with twice the time step, then with twice the mesh width, and then
+    with twice the mesh width on half the domain. The scheme is of first order in time: the first
+    difference is the leading term of the error. In space it is at least of first order, wherever
+    the kinks lie: the second difference bounds the error. The error of the domain falls faster
+    than exponentially with L: the third difference bounds it. The sum of the differences is
+    doubled to cover terms of higher order.
 
     Parameters
     ----------

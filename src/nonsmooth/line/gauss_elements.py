@@ -71,8 +71,9 @@ class GaussElements:
             The same, at the edge of each element that is farther from 0.
         """
         zero = self.first_right
-        left, right = _running(values[:zero], False), _running(values[zero:], True)
-        return tuple(np.concatenate(pair) for pair in zip(left, right, strict=True))
+        left, left_edges = _running(values[:zero], False)
+        right, right_edges = _running(values[zero:], True)
+        return np.concatenate([left, right]), np.concatenate([left_edges, right_edges])
 
     def from_middle(self, values: np.ndarray) -> np.ndarray:
         """Integrate between 0 and a point: int_0^y for y > 0, int_y^0 for y < 0.

@@ -4,6 +4,16 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class DryFriction:
+    """The one integral that the closed form of gamma^2 leaves."""
+
+    reach: float = 8.5  # derived: exp(-C_b y^2) at y = reach / sqrt(C_b) is below 1e-31
+    farthest: float = 40.0  # derived: and so is exp(-2 y) there
+    tolerance: float = 1e-13  # chosen: relative error asked of the quadrature, near rounding
+    rounding: float = 8.0  # chosen: eps per factor of the integrand, with some to spare
+
+
+@dataclass(frozen=True)
 class SpectralElements:
     """Mesh of the Galerkin method in L^2(m)."""
 
@@ -36,5 +46,6 @@ class Quadrature:
     pairwise: int = 32  # derived: additions in a row in numpy's pairwise sums of 1e6 numbers
 
 
+DRY_FRICTION = DryFriction()
 SPECTRAL_ELEMENTS = SpectralElements()
 QUADRATURE = Quadrature()
