@@ -619,7 +619,7 @@ def empty_caches():
     for kept in (
         quadrature.solved,
         corrected_formula._constants,
-        tail_equation.march,
+        tail_equation.equation,
         tail_equation.reach,
     ):
         kept.cache_clear()

@@ -11,7 +11,7 @@ import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.solver import EVEN
-from nonsmooth.kinetic.ordinates_line import UNHURRIED, ordinates
+from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.line import quadrature
 
 _DEGREES = (7, 9, 11, 13, 15, 17, 20)
@@ -91,7 +91,7 @@ def _walls(scene, degree, mean):
     flux, E[g psi] = 0. With the Cholesky factor of K they are eigenvectors of a symmetric matrix on
     the complement of the flux, 1/mu its eigenvalues, and its row along the flux is a.
     """
-    grid = ordinates(scene, degree, UNHURRIED / scene.damping)
+    grid = ordinates(scene, degree)
     spread = np.sqrt(grid.masses @ grid.g**2)
     if abs(mean) > _CENTRED * spread:
         raise SceneError(

@@ -12,7 +12,7 @@ import scipy.linalg
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.kinetic.ordinates_line import UNHURRIED, ordinates
+from nonsmooth.kinetic.ordinates_line import ordinates
 
 EXACT = 1e-8
 _DEGREES = (7, 9, 11, 13, 15, 17, 20)
@@ -100,7 +100,7 @@ def _expansion(scene, degree):
     the next order, A M_2 + g d_xi M_2 = - D M, has d_xi E[g M_2 M*] = - D E[M M*], and E[g M_2 M*]
     is 0 at the wall.
     """
-    grid = ordinates(scene, degree, UNHURRIED / scene.damping)
+    grid = ordinates(scene, degree)
     inner = slice(1, None)  # without the origin
     kept = np.flatnonzero(grid.g[inner])
     g, weights = grid.g[inner], grid.masses[inner]

@@ -1,1 +1,22 @@
-"""The kinetic equation between two thresholds."""
+"""The kinetic equation between two thresholds.
+
+Let tau be the first time at which x + int_0^t g leaves an interval. Its Laplace transform
+h(x, Z) = E exp(-z tau), Z the state, solves
+
+    (z - A) h = g d_x h,    h = 1 where the flow leaves: at the upper wall for g > 0, at the lower
+                            one for g < 0.
+
+This is the equation of one-dimensional radiative transfer: x is the depth in a slab, g the
+direction cosine, A the scattering. The methods here are those of that field. The state is
+discretised by nodes (discrete ordinates), and x is treated exactly by Case's elementary solutions
+or by adding and doubling of slabs. The manual page is `docs/methods/kinetic.md`.
+
+- `ordinates_line.ordinates`: nodes of one state variable, in the space L^2(m).
+- `ordinates_plane.plane_ordinates`, `ordinates_gibbs.gibbs_ordinates`: nodes of two, in general
+  and where the invariant density is known.
+- `case_modes.first_passage`, `case_modes.waves`: elementary solutions, for one variable.
+- `adding_doubling.slab`, `adding_doubling.half_space`: reflection and transmission, for two.
+- `tail_descent.tail`: a start so far in the tails that the modes cancel; the state falls from there
+  to a level near the bulk.
+- `tail_equation.equation`: the kinetic equation on the way down, marched in x.
+"""

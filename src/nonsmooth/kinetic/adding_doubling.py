@@ -1,11 +1,11 @@
-"""Reflection and transmission of a slab of x' = g by adding and doubling, without modes.
+"""The kinetic equation of two state variables by adding and doubling of slabs, without modes.
 
-In (z - A) h = g d_x h, h is known where the flow leaves a slab: at the upper face where g > 0, at
-the lower where g < 0. Its values where the flow enters are linear in these: S transmits from the
-other face, R reflects from the same. With the mirror symmetry of odd g and drift one R and one S
-serve both faces. Two slabs make one of twice the thickness; since a slab is passive for Re z >= 0,
-doubling is stable where the modes of `transport` are ill-conditioned. See van de Hulst, Multiple
-Light Scattering (1980), chapter 4.
+In (z - A) h = g d_x h, h is given where the flow leaves a slab: at the upper face for g > 0, at the
+lower for g < 0. Its values where the flow enters depend linearly on these: the matrix S transmits
+from the other face, R reflects from the same one. If g and the drift are odd, one R and one S serve
+both faces. Two slabs are added to one of twice the thickness. This is stable, since no slab
+amplifies for Re z >= 0, whereas the modes of `case_modes` are ill-conditioned for a generator that
+is not self-adjoint. See van de Hulst, Multiple Light Scattering (1980), chapter 4.
 """
 
 from dataclasses import dataclass
@@ -14,9 +14,8 @@ import numpy as np
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.solver import EVEN, ODD
-
-_OPAQUE = 1e-10  # transmission of what is as good as a half space
-_MOST = 100  # doublings on the way there
+from nonsmooth.kinetic import tuning
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
 
 
 @dataclass(frozen=True)
@@ -33,8 +32,8 @@ class Slab:
     reflection: np.ndarray
     transmission: np.ndarray
 
-    def doubled(self):
-        """Put two together."""
+    def doubled(self) -> "Slab":
+        """Add two of them."""
         R, S = self.reflection, self.transmission
         one = np.eye(len(R))
         even = S @ np.linalg.solve(one - R, S)
@@ -42,13 +41,15 @@ class Slab:
         return Slab(R + (even - odd) / 2, (even + odd) / 2)
 
 
-def slab(grid, z, thickness, doublings):
-    """Make a slab of finite thickness, its error of the order 8^-doublings in smooth modes.
+def slab(grid: PlaneOrdinates, z: complex, thickness: float, doublings: int) -> Slab:
+    """Make a slab by doubling a thin one.
+
+    Its error falls like 8^-doublings where h changes little within the thin slab.
 
     Parameters
     ----------
     grid : PlaneOrdinates
-    z : float or complex
+    z : complex
     thickness : float
     doublings : int
 
@@ -57,7 +58,7 @@ def slab(grid, z, thickness, doublings):
     Slab
     """
     thin = thickness / 2**doublings
-    # extrapolated from one step, two and four, which damps all that decays within the thin slab
+    # Richardson extrapolation of implicit Euler steps to order 3, which damps what changes fast
     scattering = {parity: grid.scattering(z, parity) for parity in (EVEN, ODD)}
     one, two, four = (_step(scattering, grid.speeds, thin / k) for k in (1, 2, 4))
     two, four = two.doubled(), four.doubled().doubled()
@@ -70,23 +71,23 @@ def slab(grid, z, thickness, doublings):
     return made
 
 
-def half_space(made):
-    """Reflection of a half space, from a slab.
+def half_space(made: Slab) -> np.ndarray:
+    """Reflection of a half space, made by doubling a slab until nothing passes it.
 
     Raises
     ------
     ToleranceError
         If the slab does not absorb.
     """
-    for _ in range(_MOST):
-        if np.max(np.abs(made.transmission)) < _OPAQUE:
+    for _ in range(tuning.ADDING_DOUBLING.most):
+        if np.max(np.abs(made.transmission)) < tuning.ADDING_DOUBLING.opaque:
             return made.reflection
         made = made.doubled()
     raise ToleranceError("the half space absorbs nothing; use method='monte_carlo'")
 
 
 def _step(scattering, speeds, thickness):
-    """Slab thinner than anything in it, where h is what it is on the side where the flow enters."""
+    """Slab of one implicit Euler step: h in the slab is taken to be h where the flow enters."""
     many, sign = len(speeds), np.sign(speeds)
     rate = np.abs(speeds) / thickness
     found = []

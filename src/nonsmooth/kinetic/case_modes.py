@@ -1,9 +1,10 @@
-"""First passage of x' = g out of an interval by Case's elementary solutions, exact in x.
+"""The kinetic equation of one state variable by Case's elementary solutions, exact in x.
 
-The Laplace transform h(x, Z) = E exp(-z tau) of the exit time of x + int g solves
-(z - A) h = g d_x h with h = 1 where the flow leaves: at the upper wall where g > 0, at the lower
-where g < 0. It is a sum of modes phi exp(mu x) with (z - A) phi = mu g phi, as many as nodes with
-g != 0; each is scaled by its value at the wall from which it decays.
+(z - A) h = g d_x h has the solutions phi(y) exp(mu x), here called modes, with
+(z - A) phi = mu g phi (Case and Zweifel, Linear Transport Theory, 1967). On a grid there are as
+many as nodes with g != 0. h is a sum of modes, whose strengths follow from h = 1 where the flow
+leaves the interval. A mode decays from one of the two walls; it is scaled to its value at that
+wall, so that no exponential is large.
 """
 
 from dataclasses import dataclass
@@ -11,24 +12,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from nonsmooth.grids.solver import EVEN, ODD
-
-_ROUNDING = 1e-12  # of the squares of the lengths over which modes decay, relative to the longest
-_SEPARATED, _POWERS = 30.0, 12  # slow eigenvalue over the others; steps until it is exact
-_DIRECTED = 0.1  # flux of a wave that only one wall sends, relative to the largest possible
+from nonsmooth.kinetic import tuning
+from nonsmooth.kinetic.ordinates_line import Ordinates
 
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes that decay from a wall, at the nodes where the flow leaves there or at the other wall.
+    """Modes that decay from one wall.
 
     Attributes
     ----------
     rates : numpy.ndarray, shape (m,)
-        |Re mu| > 0: `rates` is mu for the upper wall and -mu for the lower.
+        Rates of decay, of positive real part: mu for the upper wall and -mu for the lower.
     own, other : numpy.ndarray
-        Modes in columns, at the nodes where the flow leaves at their own and at the other wall.
+        Modes in columns, at the nodes where the flow leaves through their own and through the
+        other wall; times the root of the masses.
     start : numpy.ndarray, shape (m,)
-        Their values at the start.
+        Values of the modes at the start.
     """
 
     rates: np.ndarray
@@ -37,8 +37,10 @@ class Modes:
     start: np.ndarray
 
 
-def modes(grid, z):
-    """Modes of the upper and of the lower wall; of one half grid, where they are mirror images.
+def modes(grid: Ordinates, z: complex) -> tuple[Modes, Modes]:
+    """Compute the modes that decay from the upper and from the lower wall.
+
+    On a half grid, those of the lower wall are the mirror images of the others.
 
     Parameters
     ----------
@@ -61,8 +63,9 @@ def modes(grid, z):
     squares, odd_parts, means = _pairs(
         odd[moving] @ even[moving], odd[moving].sum(axis=1), flux, z, balance * np.sqrt(np.abs(g))
     )
-    # at real z, rounding may make the smallest negative: modes that never decay, instead of at once
-    fast = np.abs(squares) < _ROUNDING * np.max(np.abs(squares))
+    # the squares are those of decay lengths, positive for real z: rounding of the smallest ones
+    # may have changed their sign
+    fast = np.abs(squares) < tuning.CASE_MODES.rounding * np.max(np.abs(squares))
     rates = 1 / np.sqrt(np.where(fast, np.abs(squares), squares).astype(complex))
     rates = np.where(rates.real < 0, -rates, rates)
     even_parts = rates * (even @ odd_parts + means)
@@ -80,13 +83,15 @@ def modes(grid, z):
 def _pairs(regular, drift, flux, z, balance):
     """Eigenpairs of regular + drift flux / z, and flux @ vectors / z.
 
-    Where the slow mode, about drift, is far above the others, its eigenvalue would drown them in
-    rounding. They are those of the inverse plus 1/s, s of the size of `regular`, by the formula of
-    Sherman and Morrison; the slow one follows by two steps of the power method.
+    For small z the second term has one very large eigenvalue, the diffusion over the whole
+    interval, whose rounding errors are larger than the other eigenvalues. Then these are computed
+    from the inverse of the matrix plus 1/s, s of the size of `regular`, by the formula of Sherman
+    and Morrison: the large eigenvalue becomes an unimportant one. Its own eigenpair follows by the
+    power method.
     """
     vast = flux @ drift / z
     size = 2 * np.linalg.norm(regular / balance[:, None] * balance, 2)
-    if abs(vast) < _SEPARATED * size:
+    if abs(vast) < tuning.CASE_MODES.separated * size:
         values, vectors = _eigen(regular + np.outer(drift, flux / z), balance)
         return values, vectors, flux @ vectors / z
     bounded = np.linalg.inv(np.eye(len(drift)) + regular / size)
@@ -102,7 +107,7 @@ def _pairs(regular, drift, flux, z, balance):
     weighted = drift / balance**2
     means = weighted @ (vectors * values - regular @ vectors) / (weighted @ drift)
     mode = drift
-    for _ in range(_POWERS):
+    for _ in range(tuning.CASE_MODES.powers):
         mode = regular @ mode + drift * (flux @ mode / z)
         values[slow] = flux @ mode / (flux @ drift)
         mode = mode / values[slow]
@@ -111,11 +116,13 @@ def _pairs(regular, drift, flux, z, balance):
 
 
 def _eigen(matrix, balance):
+    """Eigenpairs of a matrix, balanced by a diagonal similarity."""
     values, vectors = np.linalg.eig(matrix / balance[:, None] * balance)
     return values, vectors * balance[:, None]
 
 
 def _of_all(grid, resolvent, balance):
+    """Modes on a whole grid, the eigenvectors of (z - A)^-1 g."""
     moving = grid.moving
     inverses, vectors = _eigen(resolvent[moving], balance)
     rates = 1 / inverses
@@ -134,7 +141,7 @@ def _of_all(grid, resolvent, balance):
 
 @dataclass(frozen=True)
 class Waves:
-    """E exp(-z tau) from the start's velocity, sum of `strengths` exp(-`rates` distance).
+    """E exp(-z tau) for the velocity at the start: the sum of `strengths` exp(-`rates` distance).
 
     Attributes
     ----------
@@ -145,17 +152,17 @@ class Waves:
     strengths: np.ndarray
     rates: np.ndarray
 
-    def at(self, distance):
+    def at(self, distance: float) -> complex:
         """Sum at a distance from the wall."""
         return np.exp(-self.rates * distance) @ self.strengths
 
-    def grid(self, distances, further):
+    def grid(self, distances: np.ndarray, further: np.ndarray) -> np.ndarray:
         """Sum at all distances[i] + further[k], neither negative."""
         far, near = (np.exp(-np.outer(part, self.rates)) for part in (distances, further))
         return (far * self.strengths) @ near.T
 
 
-def first_passage(grid, z, lower, upper):
+def first_passage(grid: Ordinates, z: complex, lower: float, upper: float) -> complex:
     """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
 
     Parameters
@@ -173,8 +180,8 @@ def first_passage(grid, z, lower, upper):
     return sum(w.at(d) for w, d in ((above, upper), (below, -lower)) if np.isfinite(d))
 
 
-def waves(grid, z, lower, upper):
-    """E exp(-z tau) as a function of the place, int_0^t g beginning at one in (lower, upper).
+def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Waves, Waves]:
+    """E exp(-z tau) as a function of the place in (lower, upper) at which int_0^t g begins.
 
     Parameters
     ----------
@@ -215,18 +222,21 @@ def waves(grid, z, lower, upper):
 
 
 def _of_one_wall(wall, opposite, leaving, entering, right):
-    """Sum the modes where the other wall is infinitely far.
+    """Sum the modes of a wall where the other wall is infinitely far.
 
-    The solution is continued from Re z > 0, where modes decay as they leave. Beyond, those that the
-    end of the grid reflects may grow: they belong to a wall by the sign of their flux <phi, g phi>,
-    and what they carry is left out like all that is beyond the grid.
+    For Re z > 0 these are the modes that decay away from the wall. The transform is needed for
+    Re z < 0, too, as an analytic continuation; there the end of the grid reflects some modes,
+    which then grow. So modes are assigned to the wall by the sign of their flux <phi, g phi>, which
+    continues the other rule, and by their decay only where the flux is too small to tell. Growing
+    modes say something about velocities beyond the grid: they are not counted at the start.
     """
     own = np.hstack([wall.own, opposite.other])
     other = np.hstack([wall.other, opposite.own])
     out, back = leaving @ np.abs(own) ** 2, entering @ np.abs(other) ** 2
     flux = (out - back) / (out + back)
     decays = np.repeat([1.0, -1.0], [len(wall.rates), len(opposite.rates)])
-    order = np.argsort(-np.where(np.abs(flux) > _DIRECTED, flux, _DIRECTED * decays), stable=True)
+    directed = tuning.CASE_MODES.directed
+    order = np.argsort(-np.where(np.abs(flux) > directed, flux, directed * decays), stable=True)
     chosen = order[: len(right)]
     start = np.append(wall.start, np.zeros(len(opposite.rates)))
     rates = np.append(wall.rates, np.zeros(len(opposite.rates)))

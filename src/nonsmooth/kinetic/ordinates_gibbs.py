@@ -1,13 +1,16 @@
 """Discrete ordinates of the state (y, x) with white noise where all force has a potential.
 
-In L^2 of the Gibbs density exp(-2 C_b (y^2/2 + U_n) / sigma^2) noise and damping are symmetric and
-the motion is skew: in Hermite polynomials of y / s, s^2 = sigma^2 / (2 C_b), it raises a degree by
-s d_x and lowers it by s d_x - U_n' / s, minus the adjoint. Even degrees have continuous elements in
-x, odd ones the derivatives of these, discontinuous; both relations then hold exactly, and the grid
-is passive however coarse.
+The invariant density is then that of Gibbs, exp(-2 C_b (y^2/2 + U_n) / sigma^2). In the space of
+functions weighted by it, noise and damping are symmetric and the motion is skew-symmetric. In
+Hermite polynomials of y / s, s^2 = sigma^2 / (2 C_b), the motion raises a degree by s d_x and
+lowers it by s d_x - U_n' / s, which is minus the adjoint. Coefficients of even degrees have
+continuous elements in x, those of odd degrees have discontinuous ones, one degree lower, which
+contain the derivatives of the others. Both relations then hold exactly on the grid: it neither
+gains nor loses energy, however coarse it is.
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,25 +19,15 @@ from numpy.polynomial import legendre
 from nonsmooth.grids.elements import lagrange, lobatto
 from nonsmooth.grids.grading import mirrored
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.kinetic.ordinates_plane import DROPPED, PlaneOrdinates
+from nonsmooth.kinetic import tuning
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x, y
 
-# Hermite degrees; degree in x; ends of the elements relative to the distance of the walls, and
-# within a wall relative to its depth: of slabs, and of a march, which many nodes cost less
-_LEVELS = (
-    (12, 5, (0.3, 1.0), (0.5, 1.0)),
-    (16, 6, (0.3, 1.0), (0.5, 1.0)),
-    (18, 6, (0.2, 1.0), (0.25, 0.6, 1.0)),
-    (22, 6, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
-    (36, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
-    (60, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
-    (80, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
-)
 
-
-def applies(scene):
+def applies(scene: Scene) -> bool:
     """Whether the noise is white, all force but the damping has a potential, and g is g(x)."""
     return (
         scene.state == ("y", "x")
@@ -44,7 +37,7 @@ def applies(scene):
     )
 
 
-def gibbs_ordinates(scene, ends, level):
+def gibbs_ordinates(scene: Scene, ends: dict, level: int) -> PlaneOrdinates:
     """Discretise a scene to which this `applies`, with finite n and odd g and drift.
 
     Parameters
@@ -60,12 +53,79 @@ def gibbs_ordinates(scene, ends, level):
     PlaneOrdinates
         Values are coefficients of the Hermite polynomials at nodes x > 0.
     """
-    many, degree, *_ = _LEVELS[level]
-    edges = _edges(scene, ends[x], level)
+    settings = tuning.GIBBS_ORDINATES.levels[level]
+    many, where = settings.hermite, scene.start.get("x", 0.0)
+    scale = scene.noise.sigma / math.sqrt(2 * scene.damping)
+    elements = _elements(scene, _edges(scene, ends[x], settings), settings.degree, scale)
+    masses = [m[len(m) // 2 :] for m in elements.masses]
+    nodes = [at[len(at) // 2 :] for at in elements.nodes]
+    g = [vectorised(scene.numerical_observable(), (x,))(at) for at in nodes]
+    kept = [_kept(f, m, at <= abs(where)) for f, m, at in zip(g, masses, nodes, strict=True)]
+    polynomials = _hermite(scene.start.get("y", 0.0) / scale, many)
+    generator, start = {}, {}
+    for parity in (ODD, EVEN):
+        blocks, row = _blocks(elements, polynomials, parity, where, scene.damping)
+        moving, size = [], 0
+        for k in range(many):
+            centre = len(nodes[k % 2]) - row[k].shape[1]  # 1 where x = 0 is left out
+            moving.append(size + kept[k % 2] - centre)
+            size += row[k].shape[1]
+        order = np.concatenate([*moving, np.delete(np.arange(size), np.concatenate(moving))])
+        generator[parity] = sp.block_array(blocks, format="csr")[order][:, order].tocsc()
+        start[parity] = np.hstack(row)[0][order]
+    way = math.sqrt((masses[0] @ g[0] ** 2) / masses[0].sum()) / scene.damping
+    ones = (order < len(nodes[0])).astype(float)  # the order of EVEN, the last
+    speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
+    return PlaneOrdinates(speeds, ones, way, size - len(speeds), generator, start)
+
+
+def _blocks(elements, polynomials, parity, where, damping):
+    """Make the generator, a block for each pair of Hermite degrees, and the row of the start."""
+    many = len(polynomials)
+    blocks: list = [[None] * many for _ in range(many)]
+    at_start, row = elements.at(where), []
+    for k in range(many):
+        own = parity * (-1) ** k  # parity in x
+        row.append(polynomials[k] * _folded(at_start[k % 2], own))
+        if where == 0 and own == ODD:
+            row[-1] *= 0.0
+        blocks[k][k] = -damping * k * sp.eye_array(row[-1].shape[1])
+        if k + 1 < many:
+            root = math.sqrt(k + 1)
+            blocks[k + 1][k] = sp.csr_array(root * _half(elements.raising[k % 2], own))
+            blocks[k][k + 1] = sp.csr_array(root * _half(elements.lowering[(k + 1) % 2], -own))
+    return blocks, row
+
+
+@dataclass(frozen=True)
+class _Elements:
+    """Elements in x of two kinds: continuous for even Hermite degrees, discontinuous for odd.
+
+    Attributes
+    ----------
+    edges : numpy.ndarray
+    local, nodes, masses : tuple of numpy.ndarray
+        Nodes of an element, nodes, and masses of the invariant density, for both kinds.
+    raising, lowering : tuple of numpy.ndarray
+        What the motion does to a Hermite degree of either kind, but for the root of the degree.
+    """
+
+    edges: np.ndarray
+    local: tuple
+    nodes: tuple
+    masses: tuple
+    raising: tuple
+    lowering: tuple
+
+    def at(self, point):
+        """Rows that interpolate at a point, for both kinds."""
+        return [_at(point, self.edges, local) for local in self.local]
+
+
+def _elements(scene, edges, degree, scale):
     gauss, weights = legendre.leggauss(degree)
     smooth, rough = _nodes(edges, *lobatto(degree)[:2]), _nodes(edges, gauss, weights)
     value, slope = _derived(edges, degree)
-    scale = scene.noise.sigma / math.sqrt(2 * scene.damping)
     energy = scene.potential_expression + scene.mechanics.added_potential
     energy = vectorised(energy.subs(penalization, scene.n), (x,))
     force = -vectorised(scene.numerical_drift()[y].subs(y, 0), (x,))(rough[0])
@@ -76,49 +136,22 @@ def gibbs_ordinates(scene, ends, level):
     def adjoint(matrix):
         return matrix.T * masses[1] / masses[0][:, None]
 
-    raising, lowering = (up, -adjoint(down)), (down, -adjoint(up))
-    nodes = [at[len(at) // 2 :] for at, _ in (smooth, rough)]
-    g = [vectorised(scene.numerical_observable(), (x,))(at) for at in nodes]
-    where = scene.start.get("x", 0.0)
-    kept = [
-        _kept(f, m[len(m) // 2 :], at <= abs(where))
-        for f, m, at in zip(g, masses, nodes, strict=True)
-    ]
-    polynomials = _hermite(scene.start.get("y", 0.0) / scale, many)
-    at_start = [_at(where, edges, local) for local in (lobatto(degree)[0], gauss)]
-    generator, start = {}, {}
-    for parity in (ODD, EVEN):
-        blocks, row, moving, size = [[None] * many for _ in range(many)], [], [], 0
-        for k in range(many):
-            own = parity * (-1) ** k  # in x
-            row.append(polynomials[k] * _folded(at_start[k % 2], own))
-            if where == 0 and own == ODD:
-                row[-1] *= 0.0
-            centre = len(nodes[k % 2]) - row[-1].shape[1]  # 1 where x = 0 is left out
-            blocks[k][k] = -scene.damping * k * sp.eye_array(row[-1].shape[1])
-            moving.append(size + kept[k % 2] - centre)
-            size += row[-1].shape[1]
-            if k + 1 < many:
-                root = math.sqrt(k + 1)
-                blocks[k + 1][k] = sp.csr_array(root * _half(raising[k % 2], own))
-                blocks[k][k + 1] = sp.csr_array(root * _half(lowering[(k + 1) % 2], -own))
-        order = np.concatenate([*moving, np.delete(np.arange(size), np.concatenate(moving))])
-        generator[parity] = sp.block_array(blocks, format="csr")[order][:, order].tocsc()
-        start[parity] = np.hstack(row)[0][order]
-    above = masses[0][len(masses[0]) // 2 :]
-    way = math.sqrt((above @ g[0] ** 2) / above.sum()) / scene.damping
-    ones = (order < len(nodes[0])).astype(float)  # that of EVEN, the last
-    speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
-    return PlaneOrdinates(speeds, ones, way, size - len(speeds), generator, start)
+    return _Elements(
+        edges,
+        (lobatto(degree)[0], gauss),
+        (smooth[0], rough[0]),
+        tuple(masses),
+        (up, -adjoint(down)),
+        (down, -adjoint(up)),
+    )
 
 
-def _edges(scene, end, level):
+def _edges(scene, end, settings):
     """Edges on the walls, if they are within the box."""
-    _, _, inside, within = _LEVELS[level]
     wall = scene.mechanics.penalty.at(scene.n)[0]
-    positive = min(wall, end) * np.array(inside)
+    positive = min(wall, end) * np.array(settings.inside)
     if wall < end:
-        positive = np.append(positive, wall + (end - wall) * np.array(within))
+        positive = np.append(positive, wall + (end - wall) * np.array(settings.within))
     return mirrored(positive)
 
 
@@ -149,9 +182,10 @@ def _derived(edges, degree):
 
 
 def _at(point, edges, local):
-    """Row that interpolates at a point, between nodes of either kind.
+    """Row that interpolates at a point, from nodes of either kind.
 
-    Near x = 0, without the node there: where g = 0, its value follows ill-conditioned from others.
+    Next to x = 0 it interpolates over both elements beside 0 and leaves the node x = 0 out: g = 0
+    there, and the value at such a node is ill-conditioned.
     """
     count, many = len(edges) - 1, len(local)
     stride = many - 1 if local[-1] == 1 else many
@@ -184,10 +218,10 @@ def _half(matrix, parity):
 
 
 def _kept(g, masses, near):
-    """Find the nodes that carry the mean of |g|, and those no farther than the start."""
+    """Find the nodes that carry the mean of |g|, and moving ones no farther than the start."""
     flow = np.abs(g) * masses
     order = np.argsort(flow)
-    carrying = np.cumsum(flow[order]) > DROPPED * flow.sum()
+    carrying = np.cumsum(flow[order]) > tuning.PLANE_ORDINATES.dropped * flow.sum()
     return np.union1d(order[carrying], np.flatnonzero(near & (g != 0)))
 
 

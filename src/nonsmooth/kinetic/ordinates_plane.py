@@ -1,7 +1,8 @@
 """Discrete ordinates of two state variables: the generator on half of a tensor grid.
 
-The elements are fewer than those of `mesh`, for the cost is the cube of the number of nodes that
-move, g != 0; they are graded to where g = 0.
+For an odd drift and an odd g, functions are odd or even in the state, and half of the grid is
+enough. Nodes with g != 0 are said to move. There are fewer elements than on the grids of `grids.mesh`, because
+adding and doubling costs the cube of the number of nodes that move; they are graded to where g = 0.
 """
 
 import math
@@ -19,40 +20,29 @@ from nonsmooth.grids.mesh.axes import variables
 from nonsmooth.grids.mesh.edges import kinks
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import fitted
-
-_DEPTH = 14.0  # the density outside the box is of the order exp(-14) of its maximum
-# polynomial degree of the variable that noise drives and of the other; ratio of graded edges, and
-# the element where g = 0, relative to the end: of slabs, and of a march, which many nodes cost less
-_LEVELS = (
-    (4, 2, 4.0, 0.1),
-    (5, 3, 4.0, 0.1),
-    (6, 3, 4.0, 0.1),
-    (7, 4, 3.0, 0.1),
-    (6, 4, 3.0, 0.01),
-    (8, 4, 3.0, 0.01),
-    (8, 4, 2.0, 0.01),
-)
-_FAST = 1.5  # the same in a variable that noise drives, in units of sigma sqrt(t)
-_WITHIN = (0.125, 0.35)  # edges in a wall, relative to its depth
-DROPPED = 1e-5  # part of the mean of |g| that nodes may carry that are taken to stand still
+from nonsmooth.kinetic import tuning
+from nonsmooth.scenes.scene import Scene
 
 
 @dataclass(frozen=True)
 class PlaneOrdinates:
-    """Half of a tensor grid, functions being odd or even.
+    """Half of a grid, functions being odd or even in the state.
+
+    Its unknowns are ordered: first those of nodes that move, then `held` ones, then the others.
 
     Attributes
     ----------
     speeds : numpy.ndarray, shape (k,)
-        g at the moving nodes.
+        g at the nodes that move.
     ones : numpy.ndarray
-        The function 1, at all nodes of even functions.
+        The function 1, in the unknowns of even functions.
     way : float
-        Standard deviation of g times the relaxation time of the damping.
+        How far int g goes within a relaxation time: the standard deviation of g times 1/C_b.
     held : int
-        Number of nodes that stand still, but cannot be eliminated, for they may be stuck.
+        Number of unknowns at nodes that stand still, g = 0, but are not eliminated, because z - A
+        restricted to them may be singular.
     generator : dict
-        A for each parity, sparse: the moving nodes, those held, and the others.
+        A for each parity, sparse.
     start : dict
         Row vectors that interpolate functions of each parity at the start.
     """
@@ -64,8 +54,8 @@ class PlaneOrdinates:
     generator: dict
     start: dict
 
-    def scattering(self, z, parity):
-        """Return z - A on the moving nodes and those held, having eliminated the others."""
+    def scattering(self, z: complex, parity: int) -> np.ndarray:
+        """Return z - A on the nodes that move and those held, the others being eliminated."""
         many, A = len(self.speeds) + self.held, self.generator[parity]
         matrix = z * sp.eye_array(A.shape[0], format="csc") - A
         own = matrix[:many, :many].toarray()
@@ -74,10 +64,10 @@ class PlaneOrdinates:
         across = matrix[many:, :many].toarray()
         return own - matrix[:many, many:] @ spla.splu(matrix[many:, many:].tocsc()).solve(across)
 
-    def start_row(self, z, parity):
-        """Row vector that interpolates at the start from the moving nodes.
+    def start_row(self, z: complex, parity: int) -> np.ndarray:
+        """Row vector that interpolates at the start from the nodes that move.
 
-        Where nodes stand still, (z - A) h = 0.
+        The values at the other nodes follow from (z - A) h = 0 there.
         """
         many, row, A = len(self.speeds), self.start[parity], self.generator[parity]
         if not np.any(row[many:]):
@@ -87,16 +77,17 @@ class PlaneOrdinates:
         return row[:many] - weights @ still[:, :many]
 
 
-def boxed(scene):
-    """Half widths of a box that holds the invariant density and the start."""
-    ends = fitted(scene, _DEPTH, 0).ends
+def boxed(scene: Scene) -> dict:
+    """Half widths of a box that contains the invariant density and the start."""
+    settings = tuning.PLANE_ORDINATES
+    ends = fitted(scene, settings.depth, 0).ends
     return {
-        symbol: max(end, 1.25 * abs(scene.start.get(symbol.name, 0.0)))
+        symbol: max(end, settings.start * abs(scene.start.get(symbol.name, 0.0)))
         for symbol, end in ends.items()
     }
 
 
-def plane_ordinates(scene, ends, level, time):
+def plane_ordinates(scene: Scene, ends: dict, level: int, time: float) -> PlaneOrdinates:
     """Discretise a scene with two state variables, finite n, odd drift and odd g.
 
     Parameters
@@ -133,43 +124,44 @@ def plane_ordinates(scene, ends, level, time):
 
 
 def _moving(solve, g, start, time):
-    """Find the nodes that carry the mean of |g|, of the stationary law and from the start."""
+    """Find the nodes that carry the mean of |g|, in the long run and soon after the start."""
     matrix = sp.eye_array(len(g)) / time - solve.matrix(EVEN)
     visited = spla.splu(matrix.T.tocsc()).solve(start) / time
     flow = np.abs(g) * (np.abs(2 * solve.fold(solve.stationary())) + np.abs(visited))
     order = np.argsort(flow)
-    return np.sort(order[np.cumsum(flow[order]) > DROPPED * flow.sum()])
+    return np.sort(order[np.cumsum(flow[order]) > tuning.PLANE_ORDINATES.dropped * flow.sum()])
 
 
 def _axes(scene, ends, level, time):
-    driven_degree, degree, ratio, finest = _LEVELS[level]
-    made = {}
+    settings, made = tuning.PLANE_ORDINATES.levels[level], {}
     for symbol in variables(scene):
         end = ends[symbol]
-        edges = _positive(scene, symbol, end, ratio, finest, time)
+        edges = _positive_edges(scene, symbol, end, settings, time)
         edges = mirrored(distinct(edges[(edges > 1e-12 * end) & (edges <= end)], 1e-9 * end))
         if symbol == scene.noise.driven:
-            made[symbol] = continuous(edges, driven_degree)
+            made[symbol] = continuous(edges, settings.driven)
         else:
-            made[symbol] = discontinuous(edges, degree)
+            made[symbol] = discontinuous(edges, settings.other)
     return made
 
 
-def _positive(scene, symbol, end, ratio, share, time):
-    """Edges on one side of the origin."""
-    knot = kinks(scene).get(symbol, 0.0)
+def _positive_edges(scene, symbol, end, level, time):
+    """Edges > 0 of one variable: ends, kinks, and those graded to where g = 0."""
+    settings, knot = tuning.PLANE_ORDINATES, kinks(scene).get(symbol, 0.0)
     force = scene.observes_penalty_force and scene.mechanics.argument.name == "x"
     observed = symbol in scene.numerical_observable().free_symbols
     if symbol == scene.noise.driven:
         if not (observed or force):
             return np.array([knot, end / 2, end])
-        finest = min(end / 9, _FAST * scene.noise.sigma * math.sqrt(time))
-        return np.append(graded(end, finest, ratio), knot)
+        fast = settings.fast * scene.noise.sigma * math.sqrt(time)
+        return np.append(graded(end, min(end / settings.coarsest, fast), level.ratio), knot)
     wall = knot < end and scene.mechanics.argument == symbol and symbol.name == "x"
     edges = np.array([end, knot])
     if wall:
-        edges = np.append(edges, knot + (end - knot) * np.array(_WITHIN))
-    if force:
-        return np.append(edges, knot - graded(knot / 2, knot / 64, ratio))
+        edges = np.append(edges, knot + (end - knot) * np.array(settings.in_wall))
+    if force:  # g = 0 up to the kink
+        largest, finest = (knot / part for part in settings.beside_knot)
+        return np.append(edges, knot - graded(largest, finest, level.ratio))
     inner = knot if wall else end
-    return np.append(edges, graded(inner, max(share * inner, 0.0 if wall else knot), ratio))
+    finest = max(level.finest * inner, 0.0 if wall else knot)
+    return np.append(edges, graded(inner, finest, level.ratio))

@@ -1,12 +1,15 @@
-"""The way of the velocity from a start far in the tails, where the modes of `transport` cancel.
+"""A start far in the tails: how the velocity falls from there to the bulk.
 
-It falls from the start to a level near the bulk, and on the way g keeps one sign: int g moves
-towards one wall only, see `tail_transport`. As long as drift and g are linear, (y, int g) is
-normal: that flight, in which a far start is all but deterministic and its transform grows off the
-axis, is in closed form.
+Functions on the grids of `ordinates_line` are weighted by the invariant density. Far in the tails,
+where this density is below the rounding error of the modes, they have no digits. But from there the
+velocity first falls to a level near the bulk, and g keeps its sign on the way, so that int g moves
+towards one wall only (`tail_equation`). While y stays where drift and g are linear, (y, int g) is
+even normally distributed, in closed form. That first part is also the one in which paths are almost
+deterministic, which makes Laplace transforms hard to invert.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,28 +20,26 @@ from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from nonsmooth.errors import SceneError
+from nonsmooth.kinetic import tuning
 from nonsmooth.line.kinks import isolated_zeros, sign_changes, switches
 from nonsmooth.line.potential import potential
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
-
-_LEVEL = 8.0  # depth of the level: logarithm of the largest invariant density over that there
-_SPREADS = 6.5  # standard deviations beyond which nothing is looked for; outside: 8e-11
-_POINTS = 48  # Gauss points of the normal law in each direction
-_PROBED = 2001  # points at which g is looked at
-_LINEAR = 1e-12  # deviation of what is called linear
+from nonsmooth.scenes.scene import Scene
 
 
-@dataclass(frozen=True, eq=False)  # the same only if identical, to be a key of `march`
+@dataclass(frozen=True, eq=False)  # compared by identity, to be a key of caches
 class Tail:
-    """The state between the bulk and a far start, y turned so that the start is positive.
+    """The velocities between a level near the bulk and beyond a far start.
+
+    The sign of y is such that the start is positive.
 
     Attributes
     ----------
     side : int
-        Sign of the start.
+        Sign of the start in the scene.
     level, start : float
-        Velocities, turned.
+        Velocities at which the bulk and the paths begin.
     towards : int
         1 if int g moves to the upper wall, -1 if to the lower.
     drift, speed : callable
@@ -49,49 +50,54 @@ class Tail:
     floor : float
         The last such velocity below the level.
     lines : tuple or None
-        (value at 0, slope) of drift and of |g| beyond the floor; None where they are not linear.
+        (value at 0, slope) of drift and of |g| beyond the floor; None if they are not linear.
     """
 
     side: int
     level: float
     start: float
     towards: int
-    drift: object
-    speed: object
+    drift: Callable
+    speed: Callable
     sigma: float
     kinks: np.ndarray
     floor: float
     lines: tuple | None
 
     @cached_property
-    def rate(self):
-        """Largest rate at which the solution changes at the level, in time."""
+    def rate(self) -> float:
+        """Largest rate in time at which the solution changes at the level."""
         diffusion = self.sigma**2 / self.level**2
-        return 3 * max(diffusion, float(self.drift(self.level)) / self.level)
+        return tuning.TAIL_DESCENT.rate * max(diffusion, float(self.drift(self.level)) / self.level)
 
     @cached_property
-    def flight(self):
-        """Time within which y stays above the floor, and (y, int g) is normal; 0 if it is not."""
+    def flight(self) -> float:
+        """Time until which y stays above the floor, so that (y, int g) is normal; 0 if it never is.
+
+        "Stays" up to a probability of 1e-10.
+        """
         return self._above(self.floor)
 
     @cached_property
-    def descent(self):
-        """Time within which y stays above the level, at most `flight`."""
+    def descent(self) -> float:
+        """Time until which y stays above the level, at most `flight`; 0 as there."""
         return self._above(self.level)
 
     def _above(self, velocity):
+        """Time until which y stays above a velocity while all is linear."""
         if self.lines is None:
             return 0.0
+        spreads = tuning.TAIL_DESCENT.spreads
         (push, rate), _ = self.lines
         fall = (self.start - velocity) * rate / (push + rate * velocity)
-        times = np.log1p(fall) / rate * np.linspace(0, 1, 401)[1:]
+        times = np.log1p(fall) / rate * np.linspace(0, 1, tuning.TAIL_DESCENT.times)[1:]
         laws = [self.law(t) for t in times]
-        near = [law.mean[0] - velocity < _SPREADS * math.sqrt(law.covariance[0, 0]) for law in laws]
-        first = near.index(True)  # the mean arrives at the last time
+        near = [law.mean[0] - velocity < spreads * math.sqrt(law.covariance[0, 0]) for law in laws]
+        first = near.index(True)  # at the last time the mean arrives, so there is one
         return float(times[first - 1]) if first else 0.0
 
-    def law(self, time):
-        """Return the law of (y, int |g|), as if drift and g were linear everywhere.
+    def law(self, time: float) -> "NormalLaw":
+        """Return the law of (y, int |g|) at a time, as if drift and g were linear everywhere.
 
         Parameters
         ----------
@@ -100,27 +106,27 @@ class Tail:
 
         Returns
         -------
-        Law
+        NormalLaw
         """
         if time == 0:
-            return Law(np.array([self.start, 0.0]), np.zeros((2, 2)))
+            return NormalLaw(np.array([self.start, 0.0]), np.zeros((2, 2)))
         (push, rate), (offset, gain) = self.lines
         k = rate * time
         once, twice = -math.expm1(-k) / rate, -math.expm1(-2 * k) / (2 * rate)
         way = self.start * once - push * (time - once) / rate
-        if k < 1e-2:  # the terms cancel
+        if k < tuning.TAIL_DESCENT.series:  # the terms of the formula cancel
             series = 1 / 3 - k / 4 + 7 * k**2 / 60 - k**3 / 24 + 31 * k**4 / 2520
             variance = time**3 * series
         else:
             variance = (time - 2 * once + twice) / rate**2
         mixed = gain * once**2 / 2
-        return Law(
+        return NormalLaw(
             np.array([self.start * math.exp(-k) - push * once, offset * time + gain * way]),
             self.sigma**2 * np.array([[twice, mixed], [mixed, gain**2 * variance]]),
         )
 
 
-def tail(scene):
+def tail(scene: Scene) -> Tail:
     """Describe the tail in which a scene starts.
 
     Parameters
@@ -137,14 +143,14 @@ def tail(scene):
     SceneError
         If g changes its sign between the level and the start, or beyond.
     """
-    y = symbols.y
+    settings, y = tuning.TAIL_DESCENT, symbols.y
     energy, knot = potential(scene)
     expression = scene.numerical_observable()
     depth, g = vectorised(energy, (y,)), vectorised(expression, (y,))
     slope = vectorised(sympy.diff(energy, y) * scene.noise.sigma**2 / 2, (y,))
     start = abs(scene.start["y"])
     side = 1 if scene.start["y"] > 0 else -1
-    level = brentq(lambda v: depth(side * v) - _LEVEL, 0.0, start)
+    level = brentq(lambda v: depth(side * v) - settings.level, 0.0, start)
 
     def drift(v):
         return side * slope(side * np.asarray(v, dtype=float))
@@ -152,7 +158,7 @@ def tail(scene):
     def speed(v):
         return np.abs(g(side * np.asarray(v, dtype=float)))
 
-    probe = np.linspace(level, 2 * start, _PROBED)
+    probe = np.linspace(level, 2 * start, settings.probed)
     signs = np.sign(g(side * probe))
     towards = 1 if signs.sum() >= 0 else -1
     if np.any(signs * towards < 0):
@@ -160,7 +166,7 @@ def tail(scene):
             f"the start y = {scene.start['y']:g} is too far in the tails for a g that changes its "
             "sign there; start nearer or use method='monte_carlo'"
         )
-    everywhere = np.linspace(-2 * start, 2 * start, _PROBED)
+    everywhere = np.linspace(-2 * start, 2 * start, settings.probed)
     zeros, *others = [
         sign_changes(vectorised(f, (y,)), everywhere) for f in [expression, *switches(expression)]
     ]
@@ -175,18 +181,18 @@ def tail(scene):
 
 
 def _line(function, points):
-    """(value at 0, slope) of a function, None if it is not linear between the points."""
+    """Value at 0 and slope of a function; None if it is not linear between the points."""
     values = function(points)
     slope = (values[-1] - values[0]) / (points[-1] - points[0])
     value = values[0] - slope * points[0]
     line = value + slope * points
-    linear = np.all(np.abs(values - line) <= _LINEAR * np.max(np.abs(values)))
+    linear = np.all(np.abs(values - line) <= tuning.TAIL_DESCENT.linear * np.max(np.abs(values)))
     return (float(value), float(slope)) if linear else None
 
 
 @dataclass(frozen=True)
-class Law:
-    """Normal law of (y, int |g|), or a point.
+class NormalLaw:
+    """Normal law of (y, int |g|); a single point if the covariance is 0.
 
     Attributes
     ----------
@@ -198,17 +204,17 @@ class Law:
     covariance: np.ndarray
 
     @property
-    def top(self):
-        """Velocity that is hardly exceeded."""
-        return float(self.mean[0] + _SPREADS * np.sqrt(self.covariance[0, 0]))
+    def top(self) -> float:
+        """Velocity that is exceeded with a probability of 4e-11."""
+        return float(self.mean[0] + tuning.TAIL_DESCENT.spreads * np.sqrt(self.covariance[0, 0]))
 
-    def passed(self, way):
+    def passed(self, way: float) -> float:
         """P(int |g| >= way), for a positive way."""
         spread = np.sqrt(self.covariance[1, 1])
         return float(ndtr((self.mean[1] - way) / spread)) if spread > 0 else 0.0
 
-    def points(self, way):
-        """Quadrature points (y, int |g|) with int |g| < way.
+    def points(self, way: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Quadrature points for the law of (y, int |g|) given that int |g| < way.
 
         Parameters
         ----------
@@ -221,18 +227,19 @@ class Law:
         """
         if not np.any(self.covariance):
             return self.mean[:1], self.mean[1:], np.ones(1)
-        node, weight = legendre.leggauss(_POINTS)
+        spreads = tuning.TAIL_DESCENT.spreads
+        node, weight = legendre.leggauss(tuning.TAIL_DESCENT.points)
         spread = np.sqrt(self.covariance[0, 0])
         slope = self.covariance[0, 1] / self.covariance[0, 0]
         rest = np.sqrt(max(self.covariance[1, 1] - slope * self.covariance[0, 1], 1e-300))
-        u = _SPREADS * node
+        u = spreads * node
         middle = self.mean[1] + slope * spread * u
-        half = (np.clip((way - middle) / rest, -_SPREADS, _SPREADS) + _SPREADS) / 2
-        v = -_SPREADS + half[:, None] * (node + 1)
+        half = (np.clip((way - middle) / rest, -spreads, spreads) + spreads) / 2
+        v = -spreads + half[:, None] * (node + 1)
         masses = (weight * np.exp(-(u**2) / 2))[:, None] * half[:, None] * weight
         masses *= np.exp(-(v**2) / 2)
         return (
-            np.repeat(self.mean[0] + spread * u, _POINTS),
+            np.repeat(self.mean[0] + spread * u, len(node)),
             (middle[:, None] + rest * v).ravel(),
             (masses / masses.sum()).ravel(),
         )

@@ -1,8 +1,10 @@
-"""First passage of int g on the way from a far start to the bulk: the equation of the tail.
+"""The kinetic equation between a far start and the bulk, see `tail_descent`.
 
-There the transform h(x, y) = E exp(-z tau) solves the parabolic equation |g| d_s h = (A - z) h in
-the distance s to the wall that int g moves to, with h = 1 at s = 0 and, at the level, the values of
-the modes of the bulk. It is marched in s without the weight m, so that nothing cancels.
+There int g moves towards one wall only. In the distance s to this wall the transform
+h = E exp(-z tau) solves the parabolic equation |g| d_s h = (A - z) h, with h = 1 at s = 0 and, at
+the level of velocity where the bulk begins, the values that `case_modes` has found. It is marched
+in s by the implicit Runge-Kutta method Radau IIA, on elements in y that are not weighted by the
+invariant density, so that no digits are lost.
 """
 
 import math
@@ -14,35 +16,30 @@ from scipy.linalg import solve_banded
 from scipy.linalg.lapack import zgbsv
 
 from nonsmooth.errors import SceneError
-from nonsmooth.grids.elements import continuous, lagrange
-
-_OUT_OF_REACH = 30.0  # ways that are exceeded with probability exp(-30) are left out
-_STAGES = 5  # of the Radau IIA method, of order 9
-# phase by which exp(-z t) turns in a step, times the degree; and in an element
-_TURN, _ROTATION = 5.0, 40.0
-_WIDTH = 0.9  # of elements, relative to the spread of velocities on the way to the level
-_BEYOND = 4.0  # spreads by which the grid goes beyond the start
-_COARSE = 7  # degree for the longest way
+from nonsmooth.grids.elements import Axis, continuous, lagrange
+from nonsmooth.kinetic import tuning
+from nonsmooth.kinetic.case_modes import Waves
+from nonsmooth.kinetic.tail_descent import NormalLaw, Tail
 
 
 @lru_cache(maxsize=16)
-def march(tail, lower, upper, degree):
-    """Return the `March` from where the start's descent ends."""
-    return March(tail, tail.law(tail.descent), lower, upper, degree)
+def equation(tail: Tail, lower: float, upper: float, degree: int) -> "TailEquation":
+    """Return the equation for paths that begin where the start's descent ends."""
+    return TailEquation(tail, tail.law(tail.descent), lower, upper, degree)
 
 
-class March:
-    """The equation of the tail, from its wall to the place of the start.
+class TailEquation:
+    """The kinetic equation above the level, from the wall to the place of the start.
 
     Parameters
     ----------
     tail : Tail
-    law : Law
-        Of velocity and way at the beginning; taken of those that have not passed the wall.
+    law : NormalLaw
+        Of velocity and way at the beginning, conditioned on the wall not being passed.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite.
     degree : int
-        Polynomial degree of the elements; steps are refined with it.
+        Polynomial degree of the elements; a higher one also makes the steps shorter.
 
     Raises
     ------
@@ -50,7 +47,7 @@ class March:
         If the wall is infinitely far and no bound of the way is found.
     """
 
-    def __init__(self, tail, law, lower, upper, degree):
+    def __init__(self, tail: Tail, law: NormalLaw, lower: float, upper: float, degree: int):
         self._tail, self._law, self._degree = tail, law, degree
         distance, self._other = (upper, -lower) if tail.towards > 0 else (-lower, upper)
         self._length = min(distance, reach(tail))
@@ -60,22 +57,23 @@ class March:
                 "method='monte_carlo'"
             )
         self._gap = distance - self._length
-        self._grids = {}
+        self._grids: dict[int, _Grid] = {}
 
-    def mean(self, z, above, below):
-        """E exp(-z tau).
+    def mean(self, z: complex, above: Waves, below: Waves) -> complex:
+        """E exp(-z tau), the mean over paths and over the law at the beginning.
 
         Parameters
         ----------
         z : complex
-        above, below : transport.Waves
-            Of the two walls, at the level.
+        above, below : Waves
+            Of the two walls, for paths that begin at the level.
 
         Returns
         -------
         complex
         """
         tail = self._tail
+        # the grids for |z| up to a power of 2
         octave = max(0, math.ceil(math.log2(abs(z) / tail.rate)))
         if octave not in self._grids:
             points = self._law.points(self._length)
@@ -85,65 +83,73 @@ class March:
             )
         grid = self._grids[octave]
         own, opposite = (above, below) if tail.towards > 0 else (below, above)
-        ends, later = grid.step * np.arange(grid.count + 1), radau(_STAGES)[0] * grid.step
-        first, boundary = 0.0, np.zeros((grid.count, _STAGES), complex)
+        ends, later = grid.step * np.arange(grid.count + 1), grid.stages * grid.step
+        first, boundary = 0.0, np.zeros((grid.count, len(grid.stages)), complex)
         if np.isfinite(self._gap):
             first += own.at(self._gap)
             boundary += own.grid(self._gap + ends[:-1], later)
         if np.isfinite(self._other):
             first += opposite.at(self._other + self._length)
             boundary += opposite.grid(self._other + ends[-2::-1], grid.step - later)
-        # where the wall is out of reach, any values do
+        # where the wall is out of reach, the values there do not matter
         return grid.mean(z, first, boundary, 1.0 if self._gap == 0 else first)
 
 
 class _Grid:
-    """Elements in y and equal steps in s for |z| up to some size."""
+    """Elements in y and equal steps in s for |z| up to some size.
+
+    Attributes
+    ----------
+    count : int
+        Number of steps.
+    step : float
+        Their length; 0 if nothing moves.
+    stages : numpy.ndarray
+        Places of the stages within a step, relative to its length.
+    """
 
     def __init__(self, tail, top, length, points, degree, size):
         velocities, ways, masses = points
         axis = _axis(tail, top, degree, size)
         speed, generator = tail.speed(axis.nodes), _generator(tail, axis)
+        settings = tuning.TAIL_EQUATION
         self._degree = degree
         slowest = speed[0] if speed[0] > 0 else np.max(speed)
-        steps = length * degree * size / (_TURN * slowest) if slowest > 0 else 1.0
+        steps = length * degree * size / (settings.turn * slowest) if slowest > 0 else 1.0
         self.count = max(1, math.ceil(steps))
         self.step = length / self.count
-        width = self.step if self.step > 0 else 1.0  # nothing moves
+        width = self.step if self.step > 0 else 1.0
         self._pace = speed[1:] / width
         self._band, self._entering = _band(generator[1:, 1:], degree), generator[1:, 0]
-        nodes, matrix = radau(_STAGES)
+        self.stages, matrix = radau(settings.stages)
         self._shifts, self._vectors = np.linalg.eig(np.linalg.inv(matrix))
-        # where nothing moves, the end of the step is the stationary solution
+        # if nothing moves, the end of a step has the stationary solution, which is wanted
         place = np.clip(length - ways, 0.0, length) / width if length > 0 else np.ones(len(ways))
         where = np.minimum(place.astype(int), self.count - 1)
-        within = lagrange(2 * np.append(0.0, nodes) - 1, 2 * (place - where) - 1)[0]
+        within = lagrange(2 * np.append(0.0, self.stages) - 1, 2 * (place - where) - 1)[0]
         across = axis.interpolation(velocities)
         self._first = int(where.min())
-        self._weights = np.zeros((self.count - self._first, len(speed), _STAGES + 1))
+        self._weights = np.zeros((self.count - self._first, len(speed), settings.stages + 1))
         for k in np.unique(where):
             here = np.flatnonzero(where == k)
             self._weights[k - self._first] = across[here].T @ (within[here] * masses[here, None])
 
     def mean(self, z, first, boundary, begin):
-        """March from the value `begin`; `first`, `boundary`: at the level, in the steps' stages."""
-        degree, size = self._degree, len(self._pace)
-        inverse = np.linalg.inv(self._vectors)
-        carry = np.empty((_STAGES, size, size), complex)
-        enter = np.empty((_STAGES, size), complex)
-        for i, shift in enumerate(self._shifts):
-            band = np.zeros((3 * degree + 1, size), complex)
-            band[degree:] = -self._band
-            band[2 * degree] += shift * self._pace + z
-            right = np.zeros((size, size + 1), complex)
-            np.fill_diagonal(right, shift * inverse[i].sum() * self._pace)
-            right[:, -1] = self._entering
-            solution = zgbsv(degree, degree, band, right)[2]
-            carry[i], enter[i] = solution[:, :-1], solution[:, -1]
-        carry = np.tensordot(self._vectors, carry, 1)
-        enter = np.einsum("ki,in,ij->knj", self._vectors, enter, inverse)
+        """March in s and take the mean over the law at the beginning.
+
+        Parameters
+        ----------
+        z : complex
+        first : complex
+            h at the level, at the wall.
+        boundary : numpy.ndarray, shape (count, stages)
+            h at the level, in the stages of all steps.
+        begin : complex
+            h at the wall, above the level.
+        """
+        carry, enter = self._propagators(z)
         last, changes = np.ascontiguousarray(carry[-1]), boundary @ enter[-1].T
-        edge, inner = first, np.full(size, begin, complex)
+        edge, inner = first, np.full(len(self._pace), begin, complex)
         total = 0.0
         for k in range(self.count):
             if k >= self._first:
@@ -154,23 +160,46 @@ class _Grid:
             edge, inner = boundary[k, -1], last @ inner + changes[k]
         return total
 
+    def _propagators(self, z):
+        """Matrices from h at the beginning of a step, and from h at the level, to the stages.
+
+        The stages are decoupled by the eigenvectors of the Runge-Kutta matrix.
+        """
+        degree, size, many = self._degree, len(self._pace), len(self.stages)
+        inverse = np.linalg.inv(self._vectors)
+        carry = np.empty((many, size, size), complex)
+        enter = np.empty((many, size), complex)
+        for i, shift in enumerate(self._shifts):
+            band = np.zeros((3 * degree + 1, size), complex)
+            band[degree:] = -self._band
+            band[2 * degree] += shift * self._pace + z
+            right = np.zeros((size, size + 1), complex)
+            np.fill_diagonal(right, shift * inverse[i].sum() * self._pace)
+            right[:, -1] = self._entering
+            solution = zgbsv(degree, degree, band, right)[2]
+            carry[i], enter[i] = solution[:, :-1], solution[:, -1]
+        carry = np.tensordot(self._vectors, carry, 1)
+        return carry, np.einsum("ki,in,ij->knj", self._vectors, enter, inverse)
+
 
 def _axis(tail, top, degree, size=0.0):
-    """Elements from the level to beyond `top`, fine enough for exp(-i `size` t)."""
+    """Elements from the level to beyond `top`, fine enough for exp(-z t) with |z| = `size`."""
+    settings = tuning.TAIL_EQUATION
 
     def spread(v):
         return tail.sigma * math.sqrt(v / float(tail.drift(v)))
 
-    edges, end = [tail.level], top + _BEYOND * spread(top)
+    edges, end = [tail.level], top + settings.beyond * spread(top)
     while edges[-1] < end:
         v = edges[-1]
-        turned = _ROTATION * float(tail.drift(v)) / size if size > 0 else math.inf
-        edges.append(v + min(v, _WIDTH * spread(v), turned))
+        turned = settings.rotation * float(tail.drift(v)) / size if size > 0 else math.inf
+        edges.append(v + min(v, settings.width * spread(v), turned))
     edges = np.array(edges)
     return continuous(np.unique(np.append(edges, tail.kinks[tail.kinks < edges[-1]])), degree)
 
 
-def _generator(tail, axis):
+def _generator(tail, axis: Axis):
+    """Matrix of A at the nodes."""
     generator = tail.sigma**2 / 2 * axis.curvature.toarray()
     return generator - tail.drift(axis.nodes)[:, None] * axis.slope.toarray()
 
@@ -185,7 +214,7 @@ def _band(matrix, width):
 
 
 @lru_cache(maxsize=4)
-def radau(stages):
+def radau(stages: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes in (0, 1] and the matrix of the Radau IIA method, of order 2 `stages` - 1."""
     nodes = legendre.legroots([0] * (stages - 1) + [-1, 1])
     nodes = (np.sort(nodes) + 1) / 2
@@ -195,11 +224,11 @@ def radau(stages):
     return nodes, np.einsum("iqj,q,i->ij", values, weight, nodes / 2)
 
 
-@lru_cache(maxsize=16)  # the same for every degree
-def reach(tail):
-    """Way int |g| that is exceeded with probability exp(-_OUT_OF_REACH), before the level.
+@lru_cache(maxsize=16)
+def reach(tail: Tail) -> float:
+    """Way int |g| to the level that is exceeded with a probability of exp(-30) at most.
 
-    Chernoff's bound with u(y) = E exp(theta int |g|), which solves A u + theta |g| u = 0.
+    By Chernoff's bound with u(y) = E exp(theta int |g|), which solves A u + theta |g| u = 0.
 
     Parameters
     ----------
@@ -210,18 +239,20 @@ def reach(tail):
     float
         Infinite where no such u is positive.
     """
-    axis = _axis(tail, tail.start, _COARSE)
+    settings = tuning.TAIL_EQUATION
+    degree = settings.coarse
+    axis = _axis(tail, tail.start, degree)
     generator, speed = _generator(tail, axis), tail.speed(axis.nodes)
     row = axis.interpolation(tail.start).toarray()[0]
     fall = (tail.start - tail.level) / np.min(tail.drift(axis.nodes))
     if not np.any(speed):
         return 0.0
     least = np.inf
-    for theta in np.geomspace(1e-3, 1e3, 49) / (np.max(speed) * fall):
-        matrix = -_band(generator[1:, 1:], _COARSE)
-        matrix[_COARSE] -= theta * speed[1:]
-        u = np.append(1.0, solve_banded((_COARSE, _COARSE), matrix, generator[1:, 0]))
+    for theta in np.geomspace(1e-3, 1e3, settings.exponents) / (np.max(speed) * fall):
+        matrix = -_band(generator[1:, 1:], degree)
+        matrix[degree] -= theta * speed[1:]
+        u = np.append(1.0, solve_banded((degree, degree), matrix, generator[1:, 0]))
         if not np.all(u > 0):
             break
-        least = min(least, (np.log(row @ u) + _OUT_OF_REACH) / theta)
+        least = min(least, (np.log(row @ u) + settings.unlikely) / theta)
     return least

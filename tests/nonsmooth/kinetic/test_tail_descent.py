@@ -8,8 +8,8 @@ from scipy.special import ndtr
 import nonsmooth as ns
 from nonsmooth.kinetic.case_modes import first_passage, waves
 from nonsmooth.kinetic.ordinates_line import ordinates
-from nonsmooth.kinetic.tail_descent import Law, tail
-from nonsmooth.kinetic.tail_equation import March, radau, reach
+from nonsmooth.kinetic.tail_descent import NormalLaw, tail
+from nonsmooth.kinetic.tail_equation import TailEquation, radau, reach
 
 
 def far(start, **parameters):
@@ -54,7 +54,7 @@ def test_march_against_modes(threshold):
     expected = [first_passage(whole, w, *threshold) for w in z]
     out = tail(scene)
     bulk = ordinates(far(out.level), 11, 0.1)
-    marched = March(out, out.law(0.0), *threshold, 11)
+    marched = TailEquation(out, out.law(0.0), *threshold, 11)
     found = [marched.mean(w, *waves(bulk, w, *threshold)) for w in z]
     assert np.max(np.abs(np.subtract(found, expected))) < 2e-8
 
@@ -64,16 +64,16 @@ def test_mean_over_the_normal_law():
     out, z, threshold = tail(far(5.0)), 0.5 + 2j, (-3.0, 3.0)
     bulk = ordinates(far(out.level), 13, 0.1)
     at_once, later = (
-        March(out, out.law(time), *threshold, 13).mean(z, *waves(bulk, z, *threshold))
+        TailEquation(out, out.law(time), *threshold, 13).mean(z, *waves(bulk, z, *threshold))
         for time in (0.0, out.descent)
     )
     assert out.law(out.descent).passed(3.0) < 1e-15
-    assert abs(at_once - np.exp(-z * out.descent) * later) < 1e-9  # what `Law` leaves out
+    assert abs(at_once - np.exp(-z * out.descent) * later) < 1e-9  # what `NormalLaw` leaves out
 
 
 def test_points_of_a_law():
     """Moments of a normal law cut off at a way."""
-    law = Law(np.array([3.0, 1.0]), np.array([[0.25, 0.04], [0.04, 0.01]]))
+    law = NormalLaw(np.array([3.0, 1.0]), np.array([[0.25, 0.04], [0.04, 0.01]]))
     velocities, ways, weights = law.points(1.05)
     passed = ndtr(-0.5)
     hazard = np.exp(-0.125) / np.sqrt(2 * np.pi) / (1 - passed)
@@ -125,6 +125,6 @@ def test_g_that_vanishes_in_the_tail():
     scene, z = far(-3.0, observable="y + abs(y)"), 0.5 + 1j
     out = tail(scene)
     bulk = ordinates(far(-out.level, observable="y + abs(y)"), 11, 0.1)
-    marched = March(out, out.law(0.0), -0.2, 0.2, 11)
+    marched = TailEquation(out, out.law(0.0), -0.2, 0.2, 11)
     found = marched.mean(z, *waves(bulk, z, -0.2, 0.2))
     assert abs(found - first_passage(ordinates(scene, 13, 0.1), z, -0.2, 0.2)) < 2e-8

@@ -105,5 +105,5 @@ class Late(Line):
             depth,
             distances=(-self.lower, self.upper),
         )
-        march = tail_equation.march(tail, self.lower, self.upper, degree)
+        march = tail_equation.equation(tail, self.lower, self.upper, degree)
         return lambda z: march.mean(z, *waves(grid, z, self.lower, self.upper))

@@ -1,0 +1,160 @@
+"""Numbers that were chosen for the kinetic equation, a record for each method."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+@dataclass(frozen=True)
+class LineOrdinates:
+    """Elements of one state variable."""
+
+    depth: float = 40.0  # derived: the grid ends where m has fallen by exp(-40), below rounding
+    steepest: float = 12.0  # chosen: log of the ratio of the densities at the ends of an element
+    grading: float = 3.0  # chosen: widest element over its distance to a zero of g or the start
+    finest: float = 0.1  # chosen: width at a zero of g; the error is of the order of its cube
+    at_start: float = 1.0  # chosen: width at the start, where the solution is smooth
+    crossing: float = 3.0  # chosen: widest element over the spread of velocities near a wall
+    digits: float = 26.0  # derived: depths over which all digits count, exp(-26) = 5e-12
+    rarest: float = 0.1  # chosen: the element is at most 1/rarest wider, where paths are rare
+    reach: float = 12.0  # derived: sigma sqrt(t) times it is exceeded with probability exp(-72)
+    long_time: float = 1e3  # chosen: in units of 1/C_b; beyond, the grid does not depend on it
+    shrink: float = 0.98  # chosen: factor by which the end of the grid is sought
+    probed: int = 4001  # chosen: points of the sums that give the spread of the velocity
+    searched: int = 501  # chosen: points between which sign changes of g are looked for
+    cut: float = 0.3  # chosen: place at which an element is cut whose one end is a zero of g
+
+
+@dataclass(frozen=True)
+class CaseModes:
+    """Eigenvalue problems of the elementary solutions."""
+
+    rounding: float = 1e-12  # chosen: squared decay lengths below it, relative, are rounding
+    separated: float = 30.0  # chosen: slow eigenvalue over the others, from which it is split off
+    powers: int = 12  # derived: steps of the power method, separated^-12 is below rounding
+    directed: float = 0.1  # chosen: relative flux of a mode that surely belongs to one wall
+
+
+class PlaneLevel(NamedTuple):
+    """Resolution of a tensor grid.
+
+    Attributes
+    ----------
+    driven, other : int
+        Polynomial degree in the variable that noise drives, and in the other.
+    ratio : float
+        Of neighbouring elements, where they are graded.
+    finest : float
+        Element where g = 0, relative to the end of the axis.
+    """
+
+    driven: int
+    other: int
+    ratio: float
+    finest: float
+
+
+@dataclass(frozen=True)
+class PlaneOrdinates:
+    """Tensor grids of two state variables."""
+
+    depth: float = 14.0  # derived: outside the box the density is exp(-14) = 8e-7 of its maximum
+    start: float = 1.25  # chosen: the box contains so many times the start
+    # chosen: the first four for slabs, whose cost is the cube of the number of nodes; the others
+    # for time stepping, which takes finer ones
+    levels: tuple[PlaneLevel, ...] = (
+        PlaneLevel(4, 2, 4.0, 0.1),
+        PlaneLevel(5, 3, 4.0, 0.1),
+        PlaneLevel(6, 3, 4.0, 0.1),
+        PlaneLevel(7, 4, 3.0, 0.1),
+        PlaneLevel(6, 4, 3.0, 0.01),
+        PlaneLevel(8, 4, 3.0, 0.01),
+        PlaneLevel(8, 4, 2.0, 0.01),
+    )
+    coarsest: float = 9.0  # chosen: the half axis over the finest element, if noise drives g, ...
+    fast: float = 1.5  # chosen: ... which is at most so many sigma sqrt(t)
+    in_wall: tuple[float, ...] = (0.125, 0.35)  # chosen: edges inside a wall, over its depth
+    beside_knot: tuple[float, float] = (2.0, 64.0)  # chosen: depth of the kink over the largest
+    #                           and over the finest element beside it, if g is the penalty force
+    dropped: float = 1e-5  # chosen: share of E |g| at nodes that are taken to stand still
+
+
+class GibbsLevel(NamedTuple):
+    """Resolution of a grid in Hermite polynomials of the velocity and elements of displacement.
+
+    Attributes
+    ----------
+    hermite : int
+        Number of Hermite polynomials.
+    degree : int
+        Polynomial degree in x.
+    inside, within : tuple of float
+        Edges of elements relative to the distance of the wall from 0, and beyond the wall
+        relative to the depth of the box there.
+    """
+
+    hermite: int
+    degree: int
+    inside: tuple[float, ...]
+    within: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class GibbsOrdinates:
+    """Grids of the state (y, x) with a Gibbs density."""
+
+    # chosen: as in `PlaneOrdinates`, the first four for slabs, the others for time stepping
+    levels: tuple[GibbsLevel, ...] = (
+        GibbsLevel(12, 5, (0.3, 1.0), (0.5, 1.0)),
+        GibbsLevel(16, 6, (0.3, 1.0), (0.5, 1.0)),
+        GibbsLevel(18, 6, (0.2, 1.0), (0.25, 0.6, 1.0)),
+        GibbsLevel(22, 6, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
+        GibbsLevel(36, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        GibbsLevel(60, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        GibbsLevel(80, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+    )
+
+
+@dataclass(frozen=True)
+class AddingDoubling:
+    """Slabs that are put together."""
+
+    opaque: float = 1e-10  # chosen: transmission of a slab that is as good as a half space
+    most: int = 100  # chosen: doublings on the way there; 2^100 thicknesses absorb if any do
+
+
+@dataclass(frozen=True)
+class TailDescent:
+    """The way of the velocity from a far start to the bulk."""
+
+    level: float = 8.0  # chosen: the bulk begins where m has fallen by exp(-8); the modes of
+    #                     `case_modes` are good there, and a fall ends there soon
+    spreads: float = 6.5  # derived: a normal variable is farther out with probability 8e-11
+    points: int = 48  # chosen: Gauss points of a normal law in each direction, exact to rounding
+    probed: int = 2001  # chosen: points at which the sign and the slope of g are looked at
+    linear: float = 1e-12  # derived: relative deviation from a line that is rounding
+    times: int = 401  # chosen: times among which the end of the descent is sought
+    series: float = 1e-2  # derived: below it the variance is a series, whose next term is 1e-12
+    rate: float = 3.0  # chosen: safety of the rate at which the solution changes at the level
+
+
+@dataclass(frozen=True)
+class TailEquation:
+    """The kinetic equation above the level, marched in x."""
+
+    unlikely: float = 30.0  # derived: ways exceeded with probability exp(-30) are left out
+    stages: int = 5  # chosen: of the Radau IIA method, of order 9
+    turn: float = 5.0  # chosen: phase by which exp(-z t) turns in a step, times the degree
+    rotation: float = 40.0  # chosen: phase by which it turns within an element
+    width: float = 0.9  # chosen: of elements, over the spread of velocities on the way down
+    beyond: float = 4.0  # derived: spreads of y by which the grid goes beyond the start
+    coarse: int = 7  # chosen: degree of the bound of the longest way
+    exponents: int = 49  # chosen: exponents theta tried for that bound, over six decades
+
+
+LINE_ORDINATES = LineOrdinates()
+CASE_MODES = CaseModes()
+PLANE_ORDINATES = PlaneOrdinates()
+GIBBS_ORDINATES = GibbsOrdinates()
+ADDING_DOUBLING = AddingDoubling()
+TAIL_DESCENT = TailDescent()
+TAIL_EQUATION = TailEquation()
