@@ -1,8 +1,9 @@
 """Discrete ordinates of two state variables: the generator on half of a tensor grid.
 
 For an odd drift and an odd g, functions are odd or even in the state, and half of the grid is
-enough. Nodes with g != 0 are said to move. There are fewer elements than on the grids of `grids.mesh`, because
-adding and doubling costs the cube of the number of nodes that move; they are graded to where g = 0.
+enough. Nodes with g != 0 are said to move. There are fewer elements than `grids.mesh` makes,
+because adding and doubling costs the cube of the number of nodes that move; they are graded to
+where g = 0.
 """
 
 import math
