@@ -28,6 +28,27 @@ def check(config):
     for key, number in _numbers(config):
         if isnan(number):
             raise ConfigError(f"config: {key!r} is not a number; give it one")
+    _check_dry_friction(config)
+    _check_times(config["variance"])
+    _check_increasing(config)
+    _check_formulas(config)
+    _check_names(config)
+    _check_finite_p(config["finite_p"], config["crossing"])
+    _check_folders(config["outputs"])
+
+
+def _numbers(value, path=""):
+    """Yield every number of the configuration with its dotted key."""
+    if isinstance(value, dict | list):
+        items = value.items() if isinstance(value, dict) else enumerate(value)
+        for key, inner in items:
+            yield from _numbers(inner, f"{path}.{key}" if path else str(key))
+    elif isinstance(value, int | float):
+        yield path, value
+
+
+def _check_dry_friction(config):
+    """Figures 2a, 2b and table 4 are compared with solvers of the velocity alone."""
     for topic in ("variance", "crossing", "convergence"):
         scene = Scene(**config[topic]["scene"])
         if scene.state != ("y",) or scene.noise.kind != "white":
@@ -42,98 +63,6 @@ def check(config):
                 f"config: '{topic}.finite_difference.nodes' = {nodes}: (N - 1)/8 must be an "
                 f"integer, so that the mesh and the domain can be halved; use {nodes // 8 * 8 + 1}"
             )
-    _check_times(config["variance"])
-    for key, topic in (("sweep.variance", "sweep"), ("gamma2.potentials", "gamma2")):
-        times = config[topic][key.split(".")[1]]["times"]
-        if sorted(set(times)) != times:
-            raise ConfigError(f"config: '{key}.times' = {times} must increase; sort them")
-    for parameters in config["sweep"]["scenes"].values():
-        Scene(**parameters["scene"])
-    for parameters in config["gamma2"]["potentials"]["scenes"]:
-        by_formulas(parameters)
-    _check_theorems(config["theorems"])
-    lists = {
-        "sweep.simulated": config["sweep"]["simulated"],
-        "gamma2.scenes": config["gamma2"]["scenes"],
-        "density.scenes": config["density"]["scenes"],
-        "limit_theorem.scenes": config["limit_theorem"]["scenes"],
-        "theorems.ergodicity.scenes": config["theorems"]["ergodicity"]["scenes"],
-    }
-    for key, names in lists.items():
-        # table 5 and figure 8 compare with the simulations
-        simulated = key in ("gamma2.scenes", "limit_theorem.scenes")
-        choice = swept(config) if simulated else config["sweep"]["scenes"]
-        for name in names:
-            if name not in choice:
-                raise ConfigError(
-                    f"config: '{key}' has {name!r}, which is not a "
-                    f"{'simulated ' if simulated else ''}scene of the sweep; "
-                    f"choose from {', '.join(choice)}"
-                )
-    for name, parameters in ergodic_scenes(config).items():
-        if Scene(**parameters).dimension > 2:
-            raise SceneError(
-                f"config: 'theorems.ergodicity.scenes' has {name!r}, which has more than two state "
-                "variables; choose scenes with one or two"
-            )
-    p = config["limit_theorem"]["p"]
-    if sorted(set(p)) != p:
-        raise ConfigError(f"config: 'limit_theorem.p' = {p} must increase; sort them")
-    _check_finite_p(config["finite_p"], config["crossing"])
-    yielding_oscillator(config["plasticity"]["ground"], config["plasticity"]["oscillator"])
-    for model, parameters in config["trajectories"]["models"].items():
-        Scene(model, potential=parameters["potential"], damping=parameters["damping"])
-    for key, path in config["outputs"].items():
-        folder = Path(path) if key == "results" else Path(path).parent
-        while not folder.exists():
-            folder = folder.parent
-        if not (folder.is_dir() and os.access(folder, os.W_OK)):
-            raise ConfigError(
-                f"config: outputs.{key} = {path!r}: cannot write into {str(folder)!r}; "
-                "make it writable or choose another folder"
-            )
-
-
-def _check_finite_p(finite_p, crossing):
-    """Table 9's T is one of the formulas' and of Monte Carlo's."""
-    for key in ("p", "horizons"):
-        if sorted(set(finite_p[key])) != finite_p[key]:
-            raise ConfigError(
-                f"config: 'finite_p.{key}' = {finite_p[key]} must increase; sort them"
-            )
-    horizon, interval = finite_p["tabulated"], crossing["horizon"] / crossing["outputs"]
-    if horizon not in finite_p["horizons"] or not _divides(interval, horizon):
-        raise ConfigError(
-            f"config: 'finite_p.tabulated' = {horizon} must be one of finite_p.horizons and a "
-            f"multiple of crossing.horizon/crossing.outputs = {interval:g}; change it"
-        )
-    if finite_p["first_time"] > 0.5 * crossing["horizon"]:
-        raise ConfigError(
-            f"config: 'finite_p.first_time' = {finite_p['first_time']} leaves less than half of "
-            f"crossing.horizon = {crossing['horizon']}; lower it"
-        )
-
-
-def _check_theorems(theorems):
-    """Read every formula; n and C_b of the first will do."""
-    for v in theorems["langevin"]:
-        Langevin(v)
-    with warnings.catch_warnings():
-        # U = 0 is meant where the velocity alone is covered
-        warnings.simplefilter("ignore", AssumptionWarning)
-        for model, potentials in theorems["potentials"].items():
-            for U in potentials:
-                Scene(model, potential=U)
-
-
-def _numbers(value, path=""):
-    """Yield every number of the configuration with its dotted key."""
-    if isinstance(value, dict | list):
-        items = value.items() if isinstance(value, dict) else enumerate(value)
-        for key, inner in items:
-            yield from _numbers(inner, f"{path}.{key}" if path else str(key))
-    elif isinstance(value, int | float):
-        yield path, value
 
 
 def _check_times(variance):
@@ -154,6 +83,96 @@ def _check_times(variance):
 
 def _divides(part, whole):
     return abs(whole / part - round(whole / part)) < 1e-9 * whole / part
+
+
+def _check_increasing(config):
+    """Refuse lists of times and of p that do not increase."""
+    lists = {
+        "sweep.variance.times": config["sweep"]["variance"]["times"],
+        "gamma2.potentials.times": config["gamma2"]["potentials"]["times"],
+        "limit_theorem.p": config["limit_theorem"]["p"],
+        "finite_p.p": config["finite_p"]["p"],
+        "finite_p.horizons": config["finite_p"]["horizons"],
+    }
+    for key, numbers in lists.items():
+        if sorted(set(numbers)) != numbers:
+            raise ConfigError(f"config: '{key}' = {numbers} must increase; sort them")
+
+
+def _check_formulas(config):
+    """Make every scene, and so read every formula; of the theorems' n and C_b the first will do."""
+    for parameters in config["sweep"]["scenes"].values():
+        Scene(**parameters["scene"])
+    for parameters in config["gamma2"]["potentials"]["scenes"]:
+        by_formulas(parameters)
+    for model, parameters in config["trajectories"]["models"].items():
+        Scene(model, potential=parameters["potential"], damping=parameters["damping"])
+    yielding_oscillator(config["plasticity"]["ground"], config["plasticity"]["oscillator"])
+    for v in config["theorems"]["langevin"]:
+        Langevin(v)
+    with warnings.catch_warnings():
+        # U = 0 is meant where the velocity alone is covered
+        warnings.simplefilter("ignore", AssumptionWarning)
+        for model, potentials in config["theorems"]["potentials"].items():
+            for U in potentials:
+                Scene(model, potential=U)
+
+
+def _check_names(config):
+    """Refuse a scene that is not one of the sweep, or not of the kind that its topic needs."""
+    known, simulated = list(config["sweep"]["scenes"]), config["sweep"]["simulated"]
+    _check_scenes("sweep.simulated", simulated, known)
+    # table 5 and figure 8 compare with the simulations
+    for topic in ("gamma2", "limit_theorem"):
+        _check_scenes(f"{topic}.scenes", config[topic]["scenes"], simulated, "simulated ")
+    for key, topic in (
+        ("density", config["density"]),
+        ("theorems.ergodicity", config["theorems"]["ergodicity"]),
+    ):
+        _check_scenes(f"{key}.scenes", topic["scenes"], known)
+    for name, parameters in ergodic_scenes(config).items():
+        if Scene(**parameters).dimension > 2:
+            raise SceneError(
+                f"config: 'theorems.ergodicity.scenes' has {name!r}, which has more than two state "
+                "variables; choose scenes with one or two"
+            )
+
+
+def _check_scenes(key, names, choice, kind=""):
+    for name in names:
+        if name not in choice:
+            raise ConfigError(
+                f"config: '{key}' has {name!r}, which is not a {kind}scene of the sweep; "
+                f"choose from {', '.join(choice)}"
+            )
+
+
+def _check_finite_p(finite_p, crossing):
+    """Table 9's T is one of the formulas' and of Monte Carlo's."""
+    horizon, interval = finite_p["tabulated"], crossing["horizon"] / crossing["outputs"]
+    if horizon not in finite_p["horizons"] or not _divides(interval, horizon):
+        raise ConfigError(
+            f"config: 'finite_p.tabulated' = {horizon} must be one of finite_p.horizons and a "
+            f"multiple of crossing.horizon/crossing.outputs = {interval:g}; change it"
+        )
+    if finite_p["first_time"] > 0.5 * crossing["horizon"]:
+        raise ConfigError(
+            f"config: 'finite_p.first_time' = {finite_p['first_time']} leaves less than half of "
+            f"crossing.horizon = {crossing['horizon']}; lower it"
+        )
+
+
+def _check_folders(outputs):
+    """Refuse folders that cannot be written."""
+    for key, path in outputs.items():
+        folder = Path(path) if key == "results" else Path(path).parent
+        while not folder.exists():
+            folder = folder.parent
+        if not (folder.is_dir() and os.access(folder, os.W_OK)):
+            raise ConfigError(
+                f"config: outputs.{key} = {path!r}: cannot write into {str(folder)!r}; "
+                "make it writable or choose another folder"
+            )
 
 
 def label(number):

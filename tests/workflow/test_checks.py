@@ -173,7 +173,7 @@ def theorem(gamma=1.0, shift=0.5, paths=20_000):
     limit = xr.Dataset(
         {"gamma2": ("scene", [1.0]), "gamma2_error": ("scene", [1e-3])}, coords={"scene": ["a"]}
     )
-    return [samples], limit, ["a"]
+    return [samples], limit, ["a"], 0.05
 
 
 def test_distances_that_fall_pass():

@@ -8,7 +8,7 @@ rule density:
     priority: 50
     params:
         **settings("sweep/scenes/{scene}", "scene"),
-        **settings("density", "tolerances", "bins", "step", "time", "paths"),
+        **settings("density", "tolerances", "bins", "reach", "step", "time", "paths"),
         seed=config["seed"],
     script:
         "../scripts/density/solve.py"

@@ -32,7 +32,7 @@ rule finite_p_formulas:
         "<results>/finite_p/formulas.nc",
     params:
         **settings("crossing", "scene", "threshold"),
-        **settings("finite_p", "horizons", "p", "fit_from"),
+        **settings("finite_p", "horizons", "p", "fit_from", "exact_tolerance", "resolved"),
     script:
         "../scripts/finite_p/formulas.py"
 

@@ -24,7 +24,7 @@ rule check_limit_theorem:
     output:
         "<results>/limit_theorem/check.nc",
     params:
-        **settings("limit_theorem", "scenes"),
+        **settings("limit_theorem", "scenes", "level"),
     script:
         "../scripts/limit_theorem/check.py"
 

@@ -1,11 +1,9 @@
 """Table 4: v(0, T)/T for increasing n, printed and computed."""
 
 import pandas as pd
-import yaml
 
+from reproduction.printed import printed_values
 from reproduction.tables import penalization, scientific, sorted_by, typeset
-
-PRINTED = "paper/printed.yaml"
 
 
 def convergence(spectral, finite_difference):
@@ -15,8 +13,7 @@ def convergence(spectral, finite_difference):
     -------
     plain, cells : pandas.DataFrame
     """
-    with open(PRINTED, encoding="utf-8") as file:
-        printed = yaml.safe_load(file)["tab:convergence-vng-n"]
+    printed = printed_values("tab:convergence-vng-n")
     scheme = {float(run["n"]): run for run in finite_difference}
     plain, cells = [], []
     for run in sorted_by("n", spectral):

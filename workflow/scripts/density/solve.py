@@ -13,10 +13,9 @@ from reproduction import artifact
 from reproduction.jobs import produce
 
 TITLES = {"y": "velocity", "x": "displacement"}
-REACH = 4.0  # standard deviations that the bins cover
 
 
-def densities(scene, tolerances, bins, step, time, paths, seed, threads):
+def densities(scene, tolerances, bins, reach, step, time, paths, seed, threads):
     """Average the density over the bins of a histogram, and fill the histogram.
 
     Returns
@@ -27,7 +26,7 @@ def densities(scene, tolerances, bins, step, time, paths, seed, threads):
     sampling = Sampling(step, paths, (seed, "density"), threads=threads)
     state = paths_at(scene, [time], sampling)[-1]
     samples = {name: z for name, z in zip(scene.state, state, strict=False) if name in TITLES}
-    edges = {name: _edges(scene, name, z, bins) for name, z in samples.items()}
+    edges = {name: _edges(scene, name, z, bins, reach) for name, z in samples.items()}
     solved = bin_averages(scene, edges, tolerances[scene.dimension - 1])
     coords, variables = {}, {}
     for name, z in samples.items():
@@ -49,12 +48,12 @@ def densities(scene, tolerances, bins, step, time, paths, seed, threads):
     return artifact.dataset("Invariant marginal densities", summary, coords, variables)
 
 
-def _edges(scene, name, sample, bins):
+def _edges(scene, name, sample, bins, reach):
     """Edges symmetric about 0; those of a displacement between walls lie on the walls."""
     if name == "x" and scene.mechanics.argument == x:
         beyond = max(1, np.ceil((np.max(np.abs(sample)) - 1) * bins / 2))
         return np.arange(-bins / 2 - beyond, bins / 2 + beyond + 0.5) * 2 / bins
-    end = REACH * np.std(sample)
+    end = reach * np.std(sample)
     return np.linspace(-end, end, bins + 1)
 
 

@@ -15,7 +15,6 @@ from reproduction.limit_theorem import (
 )
 
 FALSE_ALARM = 1e-6  # probability that this check fails although the distances are as they should
-LEVEL = 0.05  # probability of exceeding the published error bounds, for each distance
 
 LAWS = {
     "final": (normal_law, "Xi_p(1)/gamma to the standard normal law"),
@@ -23,7 +22,7 @@ LAWS = {
 }
 
 
-def distances(samples, limit, scenes):
+def distances(samples, limit, scenes, level):
     """Compare the samples with the laws of W(1) and of the maximum of |W|.
 
     At the largest p no distance may be above what the smaller ones and the errors allow if it is
@@ -38,6 +37,8 @@ def distances(samples, limit, scenes):
         gamma^2 over scene.
     scenes : list of str
         Names, in the order of the samples.
+    level : float
+        Probability with which a distance misses its published error bound by chance.
 
     Returns
     -------
@@ -80,8 +81,8 @@ def distances(samples, limit, scenes):
             name: (over, distance, f"Kolmogorov distance of {text}"),
             f"{name}_error": (
                 over,
-                error_bound(paths, sensitivity, LEVEL),
-                "95 % bound on its error, by the sample and by gamma^2",
+                error_bound(paths, sensitivity, level),
+                f"{1 - level:.0%} bound on its error, by the sample and by gamma^2",
             ),
             f"{name}_allowed": ("scene", allowed, "what smaller p allow at the largest"),
         }
@@ -93,8 +94,8 @@ def distances(samples, limit, scenes):
         | {
             "floor": (
                 (),
-                sampling_bound(paths, LEVEL),
-                "bound that a sample's distance to its own law exceeds in 5 % of all cases",
+                sampling_bound(paths, level),
+                f"what a sample's distance to its own law exceeds in {level:.0%} of all cases",
             ),
             "false_alarm": ((), FALSE_ALARM, "probability that the check fails by chance"),
         },

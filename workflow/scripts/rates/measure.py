@@ -45,54 +45,32 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
     xarray.Dataset
         Over (scene, point).
     """
-    found = {kind: ([], [], [], []) for kind in KINDS}
+    found = {kind: [] for kind in KINDS}
     for name, entry in scenes.items():
         n = np.array(entry["n"], dtype=float)
         chain = [Scene(**entry["scene"], n=k) for k in n]
 
         def distances(factor, chain=chain, entry=entry, name=name):
-            samples = [
-                largest_distances(
-                    one,
-                    entry["variable"],
-                    horizon,
-                    Sampling(
-                        factor * min(longest, resolution * contact_time(one)),
-                        paths,
-                        (seed, "rates", name, one.n),
-                        threads=threads,
-                    ),
-                )
-                for one in chain
+            steps = [factor * min(longest, resolution * contact_time(one)) for one in chain]
+            samplings = [
+                Sampling(step, paths, (seed, "rates", name, one.n), threads=threads)
+                for one, step in zip(chain, steps, strict=True)
             ]
-            return np.array([[s.mean(), s.std(ddof=1) / np.sqrt(paths)] for s in samples]).T
+            return _distances(chain, entry["variable"], horizon, samplings)
 
         def differences(factor, chain=chain, name=name):
-            if chain[0].is_line:
-                return np.array([gamma2_difference(one) for one in chain]).T
-            own = [(seed, "weak rates", name, one.n) for one in chain]
-            return np.array(
-                [
-                    variance_difference(
-                        one,
-                        weak["horizon"],
-                        Sampling(factor * weak["step"], weak["paths"], s, threads=threads),
-                    )
-                    for one, s in zip(chain, own, strict=True)
-                ]
-            ).T
+            step, own = factor * weak["step"], (seed, "weak rates", name)
+            samplings = [
+                Sampling(step, weak["paths"], (*own, one.n), threads=threads) for one in chain
+            ]
+            return _differences(chain, weak["horizon"], samplings)
 
-        for kind, run in (("pathwise", distances), ("weak", differences)):
-            (value, error), (coarse, coarse_error) = run(1.0), run(2.0)
-            exponent, half_width = slope(n, value, error)
-            other, _ = slope(n, coarse, coarse_error)
-            fit = [exponent, half_width + abs(other - exponent)]
-            for kept, new in zip(found[kind], (value, error, coarse, fit), strict=True):
-                kept.append(new)
+        found["pathwise"].append(_fitted(n, distances))
+        found["weak"].append(_fitted(n, differences))
     over = ("scene", "point")
     variables = {"n": (over, [entry["n"] for entry in scenes.values()], "penalization")}
     for kind, text in KINDS.items():
-        value, error, coarse, fit = (np.array(item) for item in found[kind])
+        value, error, coarse, fit = map(np.array, zip(*found[kind], strict=True))
         variables |= {
             kind: (over, value, text),
             f"{kind}_error": (over, error, "its standard error, or error bound"),
@@ -110,6 +88,31 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
         {"scene": ("scene", list(scenes), "name of the scene")},
         variables,
     )
+
+
+def _distances(chain, variable, horizon, samplings):
+    """Mean largest distance to the limit and its standard error, for each scene."""
+    samples = [
+        largest_distances(one, variable, horizon, sampling)
+        for one, sampling in zip(chain, samplings, strict=True)
+    ]
+    return np.array([[s.mean(), s.std(ddof=1) / np.sqrt(len(s))] for s in samples]).T
+
+
+def _differences(chain, horizon, samplings):
+    """Difference of the variance to that of the limit and its error, for each scene."""
+    if chain[0].is_line:
+        return np.array([gamma2_difference(one) for one in chain]).T
+    pairs = zip(chain, samplings, strict=True)
+    return np.array([variance_difference(one, horizon, sampling) for one, sampling in pairs]).T
+
+
+def _fitted(n, run):
+    """Values, errors, values with twice the step, and the exponent of n with its error."""
+    (value, error), (coarse, coarse_error) = run(1.0), run(2.0)
+    exponent, half_width = slope(n, value, error)
+    other, _ = slope(n, coarse, coarse_error)
+    return value, error, coarse, [exponent, half_width + abs(other - exponent)]
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """How the time grows with samples, horizon, p, n, state variables and cores."""
 
 import os
+from functools import partial
 
 import numpy as np
 
@@ -44,79 +45,43 @@ def cost(paths, horizons, p, n, names, scenes, step, least, tolerance, paper_sch
         `size` is what is varied.
     """
     scene = Scene("friction", n=n[0])
-    cases = []
+    work = partial(_simulated, step=step)
+    first, cases = horizons[0], []
 
     def add(panel, method, size, function, *arguments, **options):
         cases.append(Case(panel, method, size, timed(function, *arguments, **options)))
 
     for count in paths:
-        add("samples", SIMULATED, count, _simulated, scene, horizons[0], step, count)
-        add(
-            "samples",
-            "with control variate",
-            count,
-            _simulated,
-            scene,
-            horizons[0],
-            step,
-            count,
-            control=True,
-        )
+        add("samples", SIMULATED, count, work, scene, first, paths=count)
+        add("samples", "with control variate", count, work, scene, first, paths=count, control=True)
     for horizon in horizons:
-        add("horizon", SIMULATED, horizon, _simulated, scene, horizon, step, least)
+        add("horizon", SIMULATED, horizon, work, scene, horizon, paths=least)
         add("horizon", SOLVED, horizon, unseeded(_expanded), scene, horizon)
         add("horizon", "paper's scheme", horizon, unseeded(_marched), scene, horizon, paper_scheme)
     for scale in p:
         add("$p$", SIMULATED, scale, _counted, scene, scale, step, least)
         add("$p$", SOLVED, scale, unseeded(_inverted), scene, scale)
-    for penalization in n:
-        stiff = scene.with_n(penalization)
-        add("$n$", SIMULATED, penalization, _simulated, stiff, horizons[0], step, least)
-        add(
-            "$n$",
-            "Euler-Maruyama, step $1/n$",
-            penalization,
-            _simulated,
-            stiff,
-            horizons[0],
-            1 / penalization,
-            least,
-            scheme="euler_maruyama",
-        )
-        add("$n$", SOLVED, penalization, unseeded(_expanded), stiff, horizons[0])
+    for k in n:
+        stiff, paper = scene.with_n(k), {"step": 1 / k, "scheme": "euler_maruyama"}
+        add("$n$", SIMULATED, k, work, stiff, first, paths=least)
+        add("$n$", "Euler-Maruyama, step $1/n$", k, work, stiff, first, paths=least, **paper)
+        add("$n$", SOLVED, k, unseeded(_expanded), stiff, first)
     for name in names:
-        own = Scene(**scenes[name]["scene"])
-        size = len(own.state)
-        add("state variables", SIMULATED, size, _simulated, own, horizons[0], step, least)
-        add(
-            "state variables",
-            f"$\\gamma^2$ to {tolerance:g}",
-            size,
-            unseeded(_rate),
-            own,
-            tolerance,
-        )
+        own, panel = Scene(**scenes[name]["scene"]), "state variables"
+        solved = f"$\\gamma^2$ to {tolerance:g}"
+        add(panel, SIMULATED, own.dimension, work, own, first, paths=least)
+        add(panel, solved, own.dimension, unseeded(_gamma2), own, tolerance)
     for threads in range(1, os.cpu_count() + 1):
-        add(
-            "cores",
-            SIMULATED,
-            threads,
-            _simulated,
-            scene,
-            horizons[0],
-            step,
-            paths[-1],
-            threads=threads,
-        )
+        add("cores", SIMULATED, threads, work, scene, first, paths=paths[-1], threads=threads)
     return measured(
-        "Growth of the time",
+        "Time against size",
         f"on one core but in the last panel; Monte Carlo with the step {step:g}",
         cases,
         rounds,
     )
 
 
-def _simulated(scene, horizon, step, paths, seed, scheme="strang", control=False, threads=1):
+def _simulated(scene, horizon, seed, step, paths, scheme="strang", control=False, threads=1):
     sampling = Sampling(step, paths, seed, threads=threads, scheme=scheme)
     sums = gram(scene, [horizon], sampling, control)
     return sums[0, 2, 2]
@@ -140,7 +105,7 @@ def _inverted(scene, p):
     return crossing_probability(scene, 0.6, [2.0], p, method="deterministic")["probability"][0]
 
 
-def _rate(scene, tolerance):
+def _gamma2(scene, tolerance):
     return asymptotic_variance(scene, tolerance, "deterministic").value
 
 

@@ -5,11 +5,13 @@ from sympy import latex
 
 from nonsmooth.scenes.formulas import parse
 from nonsmooth.scenes.symbols import eta
+from reproduction.printed import numbered
 from reproduction.tables import scientific, typeset
 
+BOUNDS = r"\ref{An2V2epsV2-bound}, \ref{An3V3epsV3-bound}, \ref{An4V4epsV4-bound}"
 COLUMNS = {
     "drift": r"$1 - \sup / C$",
-    "boxed": "boxed bound",
+    "boxed": rf"bound {BOUNDS}",
     "mechanical": "$S_1$, $S_2$",
     "forcing": "$S_3$, $S_4$",
     "forcing_printed": "$S_4$ printed",
@@ -33,7 +35,8 @@ def smallest(drift_condition):
     cells = []
     for row in plain.itertuples():
         shown = {
-            label: _margin(getattr(row, name), row.rounding) for name, label in COLUMNS.items()
+            numbered(label): _margin(getattr(row, name), row.rounding)
+            for name, label in COLUMNS.items()
         }
         if row.noise != "hamiltonian":
             shown[COLUMNS["forcing_printed"]] = "--"  # claim S_3 is right as printed

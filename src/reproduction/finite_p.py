@@ -1,0 +1,102 @@
+"""Formulas for crossing probabilities at finite p, and how fast their errors fall as p grows."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.errors import CheckError
+from nonsmooth.scenes.scene import Scene
+
+PLAIN = "plain"  # the paper's limit formula, which states no distance to a finite p
+FORMULAS = {
+    PLAIN: {"method": "asymptotic"},
+    "order 1": {"method": "corrected", "order": 1},
+    "order 2": {"method": "corrected", "order": 2},
+    "order 3": {"method": "corrected", "order": 3},
+}
+
+
+def probabilities(
+    scene: Scene, threshold: float, horizons: ArrayLike, p: ArrayLike, options: Mapping
+) -> tuple[np.ndarray, np.ndarray]:
+    """Evaluate W(sqrt(p) b, p T) by one method.
+
+    Parameters
+    ----------
+    scene : Scene
+    threshold : float
+        b.
+    horizons, p : array_like
+    options : mapping
+        The method and its options, as of `crossing_probability`.
+
+    Returns
+    -------
+    value, error : numpy.ndarray
+        Over (p, horizon).
+    """
+    found = [crossing_probability(scene, threshold, horizons, scale, **options) for scale in p]
+    pairs = np.array([[run["probability"], run["probability_error"]] for run in found])
+    value, error = pairs.swapaxes(0, 1)
+    return value, error
+
+
+def check_stated_errors(p: np.ndarray, off: np.ndarray, allowed: np.ndarray) -> None:
+    """Check that no formula is farther from the exact value than it states.
+
+    Parameters
+    ----------
+    p : numpy.ndarray
+    off, allowed : numpy.ndarray
+        Distances to the exact values and what they may be, over (formula, p, horizon).
+
+    Raises
+    ------
+    CheckError
+        Naming the formula and the first such p.
+    """
+    for name, bad in zip(FORMULAS, off > allowed, strict=True):
+        if name != PLAIN and bad.any():
+            raise CheckError(
+                f"finite_p: the error of the formula {name!r} is larger than it states at p = "
+                f"{p[bad.any(axis=-1)][0]:g}"
+            )
+
+
+def powers_of_p(
+    p: np.ndarray, distance: np.ndarray, known: np.ndarray, fit_from: float
+) -> tuple[list[float], list[float]]:
+    """Fit, for each formula, a power of p to its distance from the exact value.
+
+    Parameters
+    ----------
+    p : numpy.ndarray
+    distance, known : numpy.ndarray
+        The distances, and whether the exact values resolve them, over (formula, p).
+    fit_from : float
+        Smallest p of the fit.
+
+    Returns
+    -------
+    slopes, deviations : list of float
+        The powers, and by how much those between neighbouring p differ from them at most.
+
+    Raises
+    ------
+    CheckError
+        If fewer than two distances of a formula can be fitted.
+    """
+    slopes, deviations = [], []
+    for name, row, seen in zip(FORMULAS, distance, known, strict=True):
+        used = (p >= fit_from) & seen
+        if used.sum() < 2:
+            raise CheckError(
+                f"finite_p: the error of the formula {name!r} is resolved at fewer than two "
+                f"p >= {fit_from:g}; lower finite_p.fit_from or add values to finite_p.p"
+            )
+        scale, size = np.log(p[used]), np.log(row[used])
+        slopes.append(np.polyfit(scale, size, 1)[0])
+        deviations.append(np.abs(np.diff(size) / np.diff(scale) - slopes[-1]).max())
+    return slopes, deviations
