@@ -1,1 +1,18 @@
-"""What is studied."""
+"""What is studied: a mechanical model, its noise and the observable, in one object, the scene.
+
+A scene holds the equations of motion as formulas. All solvers read them from here: the drift, the
+smallest set of variables that determines the observable, the kinks of the penalty, the symmetries.
+Nothing is solved in this package.
+
+- `scene.Scene`: model, noise, potential U, damping C_b, penalization n, observable g, start;
+  `scene.by_formulas`: the same from a table of parameters
+- `models`: the mechanical models, one file each, and their contract `models.model.Model`
+- `noises`: `White`, `Langevin`, `Hamiltonian`, `OrnsteinUhlenbeck`, `KanaiTajimi` and their
+  contract `Noise`
+- `penalties.Penalty`: the Moreau-Yosida regularisations, `ABSOLUTE_VALUE` and `BARRIER`
+- `formulas.parse`, `formulas.vectorised`: text to sympy, sympy to numpy, without `eval`
+- `symbols`: the variables zeta, eta, y, x and the damping C_b
+- `thresholds.bounds`: the two levels of a threshold
+- `equations`: Table 2 with undefined functions; `equations.specialise` puts in a scene's own
+- `relaxation.rate_at_infinity`: how fast paths come back from far out
+"""

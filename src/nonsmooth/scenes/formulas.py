@@ -1,5 +1,6 @@
 """Formulas given as text: read without `eval`, kept symbolic, evaluated on arrays."""
 
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -59,7 +60,7 @@ _ARITHMETIC_ONLY = dict.fromkeys(
 )
 
 
-def parse(text, variables):
+def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
     """Read a formula.
 
     Parameters
@@ -105,7 +106,9 @@ def parse(text, variables):
 
 
 @lru_cache(maxsize=256)
-def vectorised(expression, variables):
+def vectorised(
+    expression: sympy.Expr, variables: tuple[sympy.Symbol, ...]
+) -> Callable[..., np.ndarray]:
     """Compile an expression to a numpy function of arrays, one argument per variable."""
     function = sympy.lambdify(variables, expression, modules="numpy", cse=True)
 

@@ -1,31 +1,72 @@
-"""The three noises of the paper: white, overdamped Langevin, stochastic Hamiltonian (Table 2)."""
+"""The three noises of the paper, and how to add one: white, Langevin, Hamiltonian (Table 2).
+
+`Noise` is the contract. `White`, `Langevin` (type 1) and `Hamiltonian` (type 2) fulfil it;
+`OrnsteinUhlenbeck` and `KanaiTajimi` are those of types 1 and 2 whose equations are linear.
+"""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 import sympy
 
 from nonsmooth.errors import SceneError
+from nonsmooth.scenes import tuning
 from nonsmooth.scenes.formulas import parse, vectorised
 from nonsmooth.scenes.symbols import eta, y, zeta
 
-# Where "at infinity" a potential is examined: far enough for the leading term of any
-# reasonable formula to dominate, near enough for its fourth power not to overflow.
-FAR = np.array([1e2, 1e3, 1e4, 1e6])
+
+@runtime_checkable
+class Noise(Protocol):
+    """What drives the oscillator: white noise dW in one of the equations of motion.
+
+    How to add one: most noises are a `Langevin` or a `Hamiltonian` with formulas of their own;
+    a function that returns one, like `KanaiTajimi`, is all that they need, and every solver takes
+    them. A noise of another kind is a frozen dataclass with the attributes below, handed to
+    `Scene(noise=...)`; it may have equations for zeta and eta. Monte Carlo simulates it by the
+    Euler-Maruyama scheme. Solvers on grids refuse it, as they need to know its invariant density.
+
+    Attributes
+    ----------
+    kind : str
+        Name of the kind, unlike those of other kinds.
+    title : str
+        What it is called in messages and captions.
+    driven : sympy.Symbol
+        The variable in whose equation sigma dW stands.
+    forcing : sympy.Expr
+        The term that it adds to the equation of the velocity, besides dW.
+    sigma : float
+        Intensity of dW, "1".
+    """
+
+    kind: ClassVar[str]
+    title: ClassVar[str]
+    driven: ClassVar[sympy.Symbol]
+    forcing: ClassVar[sympy.Expr]
+
+    @property
+    def sigma(self) -> float:
+        """Intensity of dW."""
+
+    @property
+    def drift(self) -> dict[sympy.Symbol, sympy.Expr]:
+        """The drift of the noise's own variables: a dict from zeta and eta, or some of them."""
 
 
-def _require_positive(name, value):
+def _require_positive(name: str, value: float) -> None:
     if not 0 < value < np.inf:
         raise SceneError(f"the noise needs {name} > 0, got {value}; choose a positive number")
 
 
-def langevin_drift(potential):
+def langevin_drift(potential: sympy.Expr) -> dict[sympy.Symbol, sympy.Expr]:
     """Return {eta: drift} of eq. (noise1) for a potential v(eta)."""
     return {eta: -sympy.diff(potential, eta)}
 
 
-def hamiltonian_drift(hamiltonian, dissipation):
+def hamiltonian_drift(
+    hamiltonian: sympy.Expr, dissipation: sympy.Expr
+) -> dict[sympy.Symbol, sympy.Expr]:
     """Return {zeta: B_1, eta: B_2} of eq. (defB1B2) for H(eta, zeta) and F(eta, zeta)."""
     slope = sympy.diff(hamiltonian, zeta)
     return {zeta: -sympy.diff(hamiltonian, eta) - dissipation * slope, eta: slope}
@@ -33,7 +74,7 @@ def hamiltonian_drift(hamiltonian, dissipation):
 
 @dataclass(frozen=True)
 class White:
-    """White noise: the forcing is dW itself, acting on the velocity.
+    """White noise: dW itself acts on the velocity.
 
     Parameters
     ----------
@@ -47,13 +88,13 @@ class White:
     driven: ClassVar[sympy.Symbol] = y
     forcing: ClassVar[sympy.Expr] = sympy.Integer(0)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _require_positive("sigma", self.sigma)
         object.__setattr__(self, "sigma", float(self.sigma))
 
     @property
-    def drift(self):
-        """No variable of its own."""
+    def drift(self) -> dict[sympy.Symbol, sympy.Expr]:
+        """Empty: white noise has no variable of its own."""
         return {}
 
 
@@ -81,24 +122,25 @@ class Langevin:
     driven: ClassVar[sympy.Symbol] = eta
     forcing: ClassVar[sympy.Expr] = eta
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _require_positive("sigma", self.sigma)
-        ends = np.concatenate([-FAR, FAR])
+        far = np.array(tuning.FAR_OUT.distances)
+        ends = np.concatenate([-far, far])
         with np.errstate(all="ignore"):
             restoring = -vectorised(self.drift[eta], (eta,))(ends) / ends
-        if not (np.all(restoring > 0) and restoring[-1] > 1e-3 * restoring[-4]):
+        if not (np.all(restoring > 0) and restoring[-1] > tuning.FAR_OUT.kept * restoring[-4]):
             raise SceneError(
                 f"the noise potential v = {self.potential!r} is not confining; "
                 "v'(eta)*eta must grow at least like eta**2, for example v = 'eta**2/2'"
             )
 
     @property
-    def potential_expression(self):
+    def potential_expression(self) -> sympy.Expr:
         """v(eta), a sympy expression."""
         return parse(self.potential, (eta,))
 
     @property
-    def drift(self):
+    def drift(self) -> dict[sympy.Symbol, sympy.Expr]:
         """{eta: -v'(eta)}."""
         return langevin_drift(self.potential_expression)
 
@@ -131,10 +173,11 @@ class Hamiltonian:
     driven: ClassVar[sympy.Symbol] = zeta
     forcing: ClassVar[sympy.Expr] = eta
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _require_positive("sigma", self.sigma)
-        angle = np.linspace(0, 2 * np.pi, 16, endpoint=False)
-        ends = np.outer(FAR, np.cos(angle)), np.outer(FAR, np.sin(angle))
+        angle = np.linspace(0, 2 * np.pi, tuning.FAR_OUT.directions, endpoint=False)
+        far = tuning.FAR_OUT.distances
+        ends = np.outer(far, np.cos(angle)), np.outer(far, np.sin(angle))
         with np.errstate(all="ignore"):
             energy = vectorised(self.energy, (eta, zeta))(*ends)
             dissipation = vectorised(self.dissipation, (eta, zeta))(*ends)
@@ -150,23 +193,23 @@ class Hamiltonian:
             )
 
     @property
-    def energy(self):
+    def energy(self) -> sympy.Expr:
         """H(eta, zeta), a sympy expression."""
         return parse(self.H, (eta, zeta))
 
     @property
-    def dissipation(self):
+    def dissipation(self) -> sympy.Expr:
         """F(eta, zeta), a sympy expression."""
         return parse(self.F, (eta, zeta))
 
     @property
-    def drift(self):
+    def drift(self) -> dict[sympy.Symbol, sympy.Expr]:
         """{zeta: B_1, eta: B_2}."""
         return hamiltonian_drift(self.energy, self.dissipation)
 
 
-def OrnsteinUhlenbeck(theta=1.0, sigma=1.0):
-    """Return the Langevin noise with v = theta eta^2 / 2.
+def OrnsteinUhlenbeck(theta: float = 1.0, sigma: float = 1.0) -> Langevin:
+    """Return the Ornstein-Uhlenbeck noise, which is Langevin with v = theta eta^2 / 2.
 
     Parameters
     ----------
@@ -177,7 +220,7 @@ def OrnsteinUhlenbeck(theta=1.0, sigma=1.0):
     return Langevin(potential=f"{float(theta)!r}*eta**2/2", sigma=sigma)
 
 
-def KanaiTajimi(stiffness=1.0, damping=1.0, sigma=1.0):
+def KanaiTajimi(stiffness: float = 1.0, damping: float = 1.0, sigma: float = 1.0) -> Hamiltonian:
     """Return the Hamiltonian noise of earthquake engineering, a filtered white noise.
 
     Parameters
@@ -192,4 +235,8 @@ def KanaiTajimi(stiffness=1.0, damping=1.0, sigma=1.0):
     )
 
 
-NOISES = {"white": White(), "langevin": OrnsteinUhlenbeck(), "hamiltonian": KanaiTajimi()}
+NOISES: dict[str, Noise] = {
+    "white": White(),
+    "langevin": OrnsteinUhlenbeck(),
+    "hamiltonian": KanaiTajimi(),
+}

@@ -1,10 +1,10 @@
 """The non-smooth convex functions of the paper and their Moreau-Yosida regularisations.
 
-Both functions, |y| and the indicator chi_K of K = [-1, 1], are even, and the derivative of
-their regularisation is odd and piecewise linear: slope `inner` up to `knot`, slope `outer`
-beyond. These three numbers are the only definition; the regularised potential, its
-derivative (the penalty force), the exact flows of the kernels, the mesh of the PDE solvers
-and the typeset tables all derive from them.
+Both functions, |y| and the indicator chi_K of K = [-1, 1], are even. The derivative of their
+regularisation is odd and piecewise linear: its slope is `inner` up to `knot` and `outer` beyond.
+These three numbers define a penalty. The regularised potential, its derivative (the penalty force),
+the exact flows of the simulation, the meshes of the solvers on grids and the typeset tables are all
+derived from them.
 """
 
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class Penalty:
     inner: sympy.Expr
     outer: sympy.Expr
 
-    def potential(self, z):
+    def potential(self, z: sympy.Symbol) -> sympy.Expr:
         """Return the regularised potential phi_n(z), a sympy expression."""
         beyond = sympy.Abs(z) - self.knot
         linear = sympy.expand(self.inner * self.knot**2 / 2 + self.inner * self.knot * beyond)
@@ -44,21 +44,21 @@ class Penalty:
             (linear + self.outer * beyond**2 / 2, True),
         )
 
-    def force(self, z):
+    def force(self, z: sympy.Symbol) -> sympy.Expr:
         """Return phi_n'(z), a sympy expression."""
         tail = self.inner * self.knot + self.outer * (sympy.Abs(z) - self.knot)
         return sympy.Piecewise(
             (self.inner * z, sympy.Abs(z) <= self.knot), (sympy.sign(z) * tail, True)
         )
 
-    def potential_at(self, z, stiffness):
+    def potential_at(self, z: sympy.Symbol, stiffness: float) -> sympy.Expr:
         """Return phi_n(z) for n = `stiffness`, which may be inf if the knot then is at 0."""
         if stiffness < float("inf"):
             return self.potential(z).subs(n, sympy.Float(stiffness))
         force, outer = (sympy.limit(f, n, sympy.oo) for f in (self.inner * self.knot, self.outer))
         return force * sympy.Abs(z) + outer * z**2 / 2
 
-    def at(self, stiffness):
+    def at(self, stiffness: float) -> tuple[float, float, float]:
         """Return (knot, inner, outer) as floats for n = `stiffness`, which may be inf."""
         return _at(self, float(stiffness))
 

@@ -8,19 +8,16 @@ import numpy as np
 
 from nonsmooth.errors import SceneError
 from nonsmooth.estimate import Estimate
+from nonsmooth.scenes import tuning
 from nonsmooth.scenes.formulas import vectorised
-
-_FAR = np.array([1e5, 1e6, 1e7])  # distances between which the drift must be linear
-
-
-_LINEAR = 1e-6  # its slopes may differ by so much
+from nonsmooth.scenes.scene import Scene
 
 
-def rate_at_infinity(scene):
+def rate_at_infinity(scene: Scene) -> Estimate:
     """Rate at which P_t V_n / V_n decays far out, which no rate in the V_n-norm exceeds.
 
-    There V_n is quadratic and the drift linear, so that paths are exp(J t) z and the rate is
-    twice that of the slowest eigenvalue of J.
+    Far out V_n is quadratic and the drift is linear with a matrix J. Paths are exp(J t) z there,
+    and the rate is twice that of the slowest eigenvalue of J.
 
     Parameters
     ----------
@@ -38,18 +35,19 @@ def rate_at_infinity(scene):
         If the drift is not linear far out.
     """
     began = time.perf_counter()
+    far_out, mismatch = tuning.LINEAR_DRIFT.distances, tuning.LINEAR_DRIFT.mismatch
     symbols = tuple(symbol for symbol in scene.variables if symbol.name in scene.state)
     drift = scene.numerical_drift()
     drift = [vectorised(drift[symbol], symbols) for symbol in symbols]
 
     def slopes(direction):
-        values = np.array([rate(*np.outer(direction, _FAR)) for rate in drift])
-        return np.diff(values) / np.diff(_FAR)
+        values = np.array([rate(*np.outer(direction, far_out)) for rate in drift])
+        return np.diff(values) / np.diff(far_out)
 
     near, far = np.moveaxis([slopes(unit) for unit in np.eye(len(symbols))], 2, 0)
     for corner in itertools.product([-1.0, 1.0], repeat=len(symbols)):
         linear = (corner @ near)[:, None]
-        if not np.allclose(slopes(corner), linear, rtol=_LINEAR, atol=_LINEAR):
+        if not np.allclose(slopes(corner), linear, rtol=mismatch, atol=mismatch):
             raise SceneError(
                 "the drift is not linear far out, where the rate of decay is read from it; choose "
                 "potentials that grow quadratically"

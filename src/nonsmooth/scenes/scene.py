@@ -6,12 +6,13 @@ import math
 import warnings
 from dataclasses import dataclass, field, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import sympy
 
 from nonsmooth.errors import AssumptionWarning, SceneError
-from nonsmooth.scenes import noises, symbols
+from nonsmooth.scenes import noises, symbols, tuning
 from nonsmooth.scenes.formulas import parse, vectorised
 from nonsmooth.scenes.models.model import Model
 from nonsmooth.scenes.models.registry import MODELS
@@ -27,7 +28,7 @@ class Scene:
     ----------
     model : str or Model
         ``"elasto_plastic"``, ``"friction"``, ``"obstacle"``, or a model object.
-    noise : str or White or Langevin or Hamiltonian
+    noise : str or Noise
         ``"white"``, ``"langevin"`` (unit Ornstein-Uhlenbeck), ``"hamiltonian"`` (unit
         Kanai-Tajimi), or a noise object.
     n : float
@@ -51,14 +52,14 @@ class Scene:
     """
 
     model: str | Model
-    noise: object = "white"
+    noise: Any = "white"  # a name is replaced by the noise that it stands for
     n: float = 100.0
     damping: float = 1.0
     potential: str = "0"
     observable: str = "y"
     start: dict = field(default_factory=dict, hash=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self._check()
         self._warn_if_not_confined()
         self._warn_if_g_grows()
@@ -72,7 +73,7 @@ class Scene:
         if isinstance(self.noise, str):
             _require_known("noise", self.noise, noises.NOISES)
             object.__setattr__(self, "noise", noises.NOISES[self.noise])
-        if not isinstance(self.noise, noises.White | noises.Langevin | noises.Hamiltonian):
+        if not isinstance(self.noise, noises.Noise) or isinstance(self.noise, type):
             raise SceneError(
                 f"a scene needs noise, got {self.noise!r}; choose from {', '.join(noises.NOISES)} "
                 "or a noise object"
@@ -118,10 +119,11 @@ class Scene:
 
         With obstacles the penalty is part of U_n and confines.
         """
-        ends = np.outer([-1, 1], noises.FAR)
+        ends = np.outer([-1, 1], tuning.FAR_OUT.distances)
         with np.errstate(all="ignore"):
-            growth = vectorised(self.potential_expression, (x,))(ends) / ends**2
-        confining = np.all(growth[:, -1] > 1e-3 * np.abs(growth[:, 0])) and np.all(growth > 0)
+            ratio = vectorised(self.potential_expression, (x,))(ends) / ends**2
+        kept = ratio[:, -1] > tuning.FAR_OUT.kept * np.abs(ratio[:, 0])
+        confining = np.all(kept) and np.all(ratio > 0)
         if "x" in self.state and not (confining or self.mechanics.in_potential):
             warnings.warn(
                 f"U = {self.potential!r} violates (HU2), U(x) >= c x**2 - C: the paper's theorems "
@@ -142,17 +144,18 @@ class Scene:
             )
 
     @cached_property
-    def grows_too_fast(self):
+    def grows_too_fast(self) -> bool:
         """Whether g^2 <= C V_n is violated, as read off the formula of g.
 
-        V_n grows like the energy, |z|^2 + U. Looked at are the origin, and far out the axes and
-        the diagonals.
+        V_n grows like the energy, |z|^2 + U. The two are compared at the origin and, far out, on
+        the axes and the diagonals.
         """
         if self.observes_penalty_force:
             return False
         used = [s for s in self.variables if s in self.observable_expression.free_symbols]
+        far, grown = np.array(tuning.FAR_OUT.distances), tuning.FAR_OUT.grown
         signs = np.array(list(itertools.product([-1, 0, 1], repeat=len(used))), dtype=float)
-        place = {s: signs[:, [k]] * noises.FAR for k, s in enumerate(used)}
+        place = {s: signs[:, [k]] * far for k, s in enumerate(used)}
         if x in place and math.isinf(self.n):
             wall = self.mechanics.wall
             place[x] = np.clip(place[x], -wall, wall)
@@ -162,14 +165,14 @@ class Scene:
                 V = V + np.abs(vectorised(self.potential_expression, (x,))(place[x]))
             g = vectorised(self._with_numbers(self.observable_expression), tuple(used))
             ratio = np.abs(g(*place.values())) / np.sqrt(V)
-        growth = np.broadcast_to(ratio, (len(signs), len(noises.FAR)))
+        ratio = np.broadcast_to(ratio, (len(signs), len(far)))
         return not (
-            np.all(np.isfinite(growth)) and np.all(10 * growth[:, 0] + 1 >= growth[:, 1:].T)
+            np.all(np.isfinite(ratio)) and np.all(grown * ratio[:, 0] + 1 >= ratio[:, 1:].T)
         )
 
     @property
-    def identity(self):
-        """All that tells scenes apart except n, by which no random stream depends."""
+    def identity(self) -> tuple:
+        """All that tells scenes apart except n, on which random streams do not depend."""
         return (
             self.model if isinstance(self.model, str) else repr(self.model),
             repr(self.noise),
@@ -179,16 +182,16 @@ class Scene:
             self.start,
         )
 
-    def with_n(self, n):
+    def with_n(self, n: float) -> "Scene":
         """Return the same scene with another penalization."""
         return self._changed(n=n)
 
-    def with_start(self, start):
+    def with_start(self, start: dict[str, float]) -> "Scene":
         """Return the same scene from another starting point."""
         return self._changed(start=start)
 
     def _changed(self, **changes):
-        """Return a scene of which there is nothing to be warned that has not been said of this."""
+        """Return a changed scene without repeating the warnings that this one has given."""
         other = object.__new__(type(self))
         other.__dict__.update({f.name: getattr(self, f.name) for f in fields(self)} | changes)
         other._check()
@@ -200,37 +203,37 @@ class Scene:
         return self.model if isinstance(self.model, Model) else MODELS[self.model]
 
     @cached_property
-    def variables(self):
+    def variables(self) -> tuple[sympy.Symbol, ...]:
         """All the variables of the paper's state Z^n, whether the observable needs them or not."""
         own = set(self.noise.drift)
         return tuple(s for s in STATE_VARIABLES if s in own or s in (symbols.y, symbols.x))
 
     @cached_property
-    def potential_expression(self):
+    def potential_expression(self) -> sympy.Expr:
         """U(x), a sympy expression."""
         return parse(self.potential, (x,))
 
     @cached_property
-    def observable_expression(self):
+    def observable_expression(self) -> sympy.Expr:
         """The observable g, a sympy expression; with n in it if it is the penalty force."""
         if self.observes_penalty_force:
             return self.mechanics.penalty_force
         return parse(self.observable, STATE_VARIABLES)
 
     @property
-    def observes_penalty_force(self):
+    def observes_penalty_force(self) -> bool:
         """Whether g is phi_n', the built-in observable named after what it is in the model."""
         return self.observable == self.mechanics.force_name
 
     @cached_property
-    def drift(self):
+    def drift(self) -> dict[sympy.Symbol, sympy.Expr]:
         """F_n of Table 2: a dict from the symbols of `variables` to sympy expressions in n, C_b."""
         return self.noise.drift | self.mechanics.drift(
             self.potential_expression, self.noise.forcing
         )
 
     @cached_property
-    def state(self):
+    def state(self) -> tuple[str, ...]:
         """Names of the smallest set of variables that determines the observable's law.
 
         The observable's variables, closed under "the drift of one contains the other".
@@ -245,16 +248,16 @@ class Scene:
             needed = grown
 
     @property
-    def dimension(self):
+    def dimension(self) -> int:
         """Number of variables of `state`."""
         return len(self.state)
 
     @property
-    def is_line(self):
+    def is_line(self) -> bool:
         """Whether the state is the velocity alone with white noise: A is self-adjoint there."""
         return self.state == ("y",) and self.noise.kind == "white"
 
-    def is_odd(self):
+    def is_odd(self) -> bool:
         """Whether g and the drift change sign with the state, so that E g = 0 by symmetry."""
         return self._odd
 
@@ -268,7 +271,7 @@ class Scene:
             for f in odd
         )
 
-    def numerical_drift(self):
+    def numerical_drift(self) -> dict[sympy.Symbol, sympy.Expr]:
         """Return `drift` with the scene's numbers in the place of n and C_b.
 
         Raises
@@ -280,7 +283,7 @@ class Scene:
             raise SceneError("the non-smooth limit n = inf has no drift; choose a finite n")
         return {s: self._with_numbers(expression) for s, expression in self.drift.items()}
 
-    def numerical_observable(self):
+    def numerical_observable(self) -> sympy.Expr:
         """Return `observable_expression` with the scene's n; Sgn(y) is sign(y).
 
         Raises
@@ -303,8 +306,8 @@ class Scene:
         )
 
 
-def by_formulas(parameters):
-    """Return the scene of a configuration, whose colored noise may be given by formulas.
+def by_formulas(parameters: dict) -> Scene:
+    """Return the scene of a table of parameters, whose colored noise may be given by formulas.
 
     Parameters
     ----------

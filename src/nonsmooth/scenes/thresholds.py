@@ -1,11 +1,12 @@
 """The levels whose crossing is asked for: one number for both sides, or one level for each."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nonsmooth.errors import SceneError
 
 
-def bounds(threshold):
+def bounds(threshold: ArrayLike) -> tuple[float, float]:
     """Return the lower and the upper level of a threshold.
 
     Parameters

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 from sympy import Symbol
 
+from nonsmooth.errors import SceneError
 from nonsmooth.grids import tuning
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
@@ -79,6 +80,11 @@ def narrowed(
 
 def _of_noise(noise, depth):
     """Half widths of the variables of colored noise."""
+    if noise.kind not in ("langevin", "hamiltonian"):
+        raise SceneError(
+            f"solvers on grids do not know the invariant density of {noise.title}; "
+            "use method='monte_carlo'"
+        )
     search = tuning.BOX
     reach = np.linspace(0, search.farthest_noise, search.noise_points)[1:]
     if noise.kind == "langevin":
