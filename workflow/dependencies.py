@@ -15,7 +15,7 @@ def _graph():
 
 
 @cache
-def sources(script):
+def sources(script: str) -> list[str]:
     """List the modules of the two packages that a script imports, directly or through others.
 
     Parameters

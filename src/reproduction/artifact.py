@@ -1,6 +1,7 @@
 """Artifacts: netCDF files with units, errors and provenance, written whole or not at all."""
 
 import hashlib
+from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 
@@ -13,15 +14,15 @@ from reproduction.files import whole
 _MARK = "nonsmooth"  # the `source` attribute starts with it
 
 
-def dataset(title, summary, coords, variables):
+def dataset(title: str, summary: str, coords: Mapping, variables: Mapping) -> xr.Dataset:
     """Assemble a dataset whose variables describe themselves.
 
     Parameters
     ----------
     title, summary : str
         ACDD globals.
-    coords, variables : dict
-        Name -> (dimensions, values, long name).
+    coords, variables : mapping
+        From names to (dimensions, values, long name).
 
     Returns
     -------
@@ -39,14 +40,14 @@ def dataset(title, summary, coords, variables):
     return xr.Dataset(entries(variables), coords=entries(coords), attrs=attrs)
 
 
-def provenance(rule, parameters, lock="environment-lock.txt"):
-    """Describe how an artifact comes about, without a clock time.
+def provenance(rule: str, parameters: Mapping, lock: str | Path = "environment-lock.txt") -> str:
+    """Describe how an artifact is made, without the time of day.
 
     Parameters
     ----------
     rule : str
     parameters : mapping
-        All that the result depends on; the seed among them.
+        Everything that the result depends on, with the seed.
     lock : str or Path
         The pinned environment, of which the hash is recorded.
 
@@ -59,7 +60,7 @@ def provenance(rule, parameters, lock="environment-lock.txt"):
     return f"rule {rule}({arguments}); {_MARK} {version(_MARK)}; lock sha256 {digest}"
 
 
-def write(dataset, path, history):
+def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
     """Write a dataset whole or not at all.
 
     Parameters
@@ -102,7 +103,7 @@ def write(dataset, path, history):
         dataset.to_netcdf(partial, engine="netcdf4", format="NETCDF4")
 
 
-def read(path):
+def read(path: str | Path) -> xr.Dataset:
     """Read a dataset into memory.
 
     Raises

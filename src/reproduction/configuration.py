@@ -7,7 +7,7 @@ import jsonschema
 from nonsmooth.errors import ConfigError
 
 
-def validate(config, schema):
+def validate(config: dict, schema: dict) -> None:
     """Check a configuration.
 
     Parameters
@@ -19,7 +19,7 @@ def validate(config, schema):
     Raises
     ------
     ConfigError
-        Naming the first offending key and the cure, in one line.
+        If a key is unknown, missing or out of range: one line that names it and what to do.
     """
     errors = jsonschema.Draft202012Validator(schema).iter_errors(config)
     error = next(iter(sorted(errors, key=lambda e: list(map(str, e.absolute_path)))), None)

@@ -1,20 +1,41 @@
-"""How a script runs as a job: failures the user can mend cost one line, all others a traceback.
-
-A task is any object with the attributes `rule`, `params`, `input`, `output` and `log`, where
-`params` and `input` have named items.
-"""
+"""How a script runs as a job: one line on what the user can mend, and a traceback on the rest."""
 
 import sys
 import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Protocol
+
+import xarray as xr
 
 from nonsmooth.errors import NonsmoothError
 from reproduction import artifact
 
 
+class Task(Protocol):
+    """What a script is asked to do, as `snakemake` hands it over.
+
+    Attributes
+    ----------
+    rule : str
+    params : mapping
+        Parameters of the script's function by name.
+    input : mapping
+        Files by name; artifacts, which end in ``.nc``, are read for the function.
+    output, log : sequence of str
+        Files to write.
+    """
+
+    rule: str
+    params: Mapping
+    input: Mapping
+    output: Sequence[str]
+    log: Sequence[str]
+
+
 @contextmanager
-def job(log):
+def job(log: str | Path) -> Iterator[None]:
     """Run the body; on failure write the traceback to `log` and exit with status 1.
 
     Parameters
@@ -40,10 +61,15 @@ def job(log):
     log.write_text("done\n", encoding="utf-8")
 
 
-def inputs(task):
-    """Read the artifacts among a task's inputs: name -> dataset or list of datasets.
+def inputs(task: Task) -> dict[str, xr.Dataset | list[xr.Dataset]]:
+    """Read the artifacts among a task's inputs.
 
-    Other inputs, such as source files, are what the script itself reads.
+    The other inputs, such as source files, the script reads itself if at all.
+
+    Returns
+    -------
+    dict
+        From names to a dataset or a list of datasets.
     """
     return {
         name: artifact.read(paths)
@@ -59,14 +85,14 @@ def _are_artifacts(paths):
     return all(Path(path).suffix == ".nc" for path in every)
 
 
-def produce(compute, task):
+def produce(compute: Callable, task: Task) -> None:
     """Run a task whose output is one artifact.
 
     Parameters
     ----------
     compute : callable
         Takes the task's input artifacts and parameters by name, returns an xarray.Dataset.
-    task : object
+    task : Task
     """
     with job(task.log[0]):
         data, parameters = inputs(task), dict(task.params.items())

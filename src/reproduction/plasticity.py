@@ -8,7 +8,7 @@ from nonsmooth.scenes.noises import KanaiTajimi
 from nonsmooth.scenes.scene import Scene
 
 
-def yielding_oscillator(ground, oscillator):
+def yielding_oscillator(ground: dict, oscillator: dict) -> Scene:
     """Return the scene whose integrated observable is the permanent deformation.
 
     Parameters
@@ -32,7 +32,7 @@ def yielding_oscillator(ground, oscillator):
     )
 
 
-def relaxation_time(oscillator):
+def relaxation_time(oscillator: dict) -> float:
     """Time in which the amplitude of the structure's elastic vibration falls by e.
 
     2/C_b, the reciprocal of the spectral gap of the underdamped linear oscillator; yielding adds

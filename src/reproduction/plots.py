@@ -1,5 +1,6 @@
 """One style for all figures; the same bytes on every run."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib as mpl
@@ -9,7 +10,7 @@ mpl.use("agg")
 import matplotlib.pyplot as plt
 
 from reproduction.files import whole
-from reproduction.jobs import inputs, job
+from reproduction.jobs import Task, inputs, job
 
 TEXT_WIDTH = 6.3  # inches
 # Wong's colour-blind-safe palette, ordered so that neighbours also differ in grey
@@ -36,15 +37,14 @@ STYLE = {
 }
 
 
-def draw(plot, task):
+def draw(plot: Callable, task: Task) -> None:
     """Run a task whose outputs are one figure as PDF and PNG.
 
     Parameters
     ----------
     plot : callable
         Takes the task's input artifacts and parameters by name, returns a matplotlib Figure.
-    task : object
-        See `nonsmooth.jobs`.
+    task : Task
     """
     with job(task.log[0]), mpl.rc_context(STYLE):
         figure = plot(**inputs(task), **dict(task.params.items()))

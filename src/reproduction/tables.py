@@ -3,15 +3,19 @@
 Cells are LaTeX, with mathematics between dollar signs.
 """
 
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
+import pandas as pd
 import tylax
+import xarray as xr
+from numpy.typing import ArrayLike
 
 from reproduction.files import whole
-from reproduction.jobs import inputs, job
+from reproduction.jobs import Task, inputs, job
 
 
-def typeset(build, task):
+def typeset(build: Callable, task: Task) -> None:
     """Run a task whose outputs are one table as .csv, .tex and .typ.
 
     Parameters
@@ -19,8 +23,7 @@ def typeset(build, task):
     build : callable
         Takes the task's input artifacts and parameters by name; returns the table to compute
         with and the table to read, two pandas.DataFrame.
-    task : object
-        See `nonsmooth.jobs`.
+    task : Task
     """
     with job(task.log[0]):
         plain, cells = build(**inputs(task), **dict(task.params.items()))
@@ -34,12 +37,12 @@ def typeset(build, task):
                 partial.write_text(render[path.suffix](), encoding="utf-8")
 
 
-def latex(cells):
+def latex(cells: pd.DataFrame) -> str:
     """Return a booktabs tabular."""
     return cells.to_latex(index=False, escape=False, column_format="l" * len(cells.columns))
 
 
-def typst(cells):
+def typst(cells: pd.DataFrame) -> str:
     """Return a Typst table with three rules, as booktabs has them.
 
     ``cells.attrs["widths"]`` are Typst's widths of the columns, where text has to be broken.
@@ -66,23 +69,23 @@ def _typst(cell):
     )
 
 
-def scientific(value, digits=1, bound=False):
+def scientific(value: ArrayLike, digits: int = 1, bound: bool = False) -> str:
     """Spell a number as LaTeX mathematics in scientific notation; a bound is rounded up."""
     value = float(value) * (1 + 10.0**-digits / 2 if bound else 1)
     mantissa, exponent = f"{value:.{digits}e}".split("e")
     return rf"${mantissa} \times 10^{{{int(exponent)}}}$"
 
 
-def penalization(n):
+def penalization(n: float) -> str:
     """Spell n as LaTeX mathematics."""
     return r"$\infty$" if n == float("inf") else f"${n:g}$"
 
 
-def symbol(name):
+def symbol(name: str) -> str:
     """Spell a variable, or an observable that is one, as LaTeX mathematics."""
     return f"${name}$" if len(name) == 1 else rf"$\{name}$"
 
 
-def sorted_by(name, datasets):
+def sorted_by(name: str, datasets: Iterable[xr.Dataset]) -> list[xr.Dataset]:
     """Return artifacts in the order of a scalar coordinate."""
     return sorted(datasets, key=lambda dataset: float(dataset[name]))
