@@ -36,7 +36,7 @@ from nonsmooth.paths.resolution import SIGMAS, coarse_step
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.statistics import gamma2_on_grids, moments_on_grids
 from nonsmooth.statistics.sampled_gamma2 import slopes
-from nonsmooth.statistics.spectral_gap import _on as spectral_gap_on
+from nonsmooth.statistics.spectral_gap import gap_on as gap_on_grid
 
 SEED, OUTPUT = 1, Path("results/requests")
 COLUMNS = [
@@ -442,18 +442,18 @@ def gap_on_degree(request, degree):
 
 def growth_on(request, grid):
     """Solve for gamma^2."""
-    return gamma2_on_grids.growth_rate(request.scene, grid, 0.02 * request.tol)
+    return gamma2_on_grids.gamma2_on(request.scene, grid, 0.02 * request.tol)
 
 
 def moments_on(request, grid):
     """Solve for v."""
     times = request.given["times"]
-    return moments_on_grids._on(request.scene, grid, times, 0.05 * request.tol * times)[0][1]
+    return moments_on_grids.moments_on(request.scene, grid, times, 0.05 * request.tol * times)[0][1]
 
 
 def gap_on(request, grid):
     """Compute the gap."""
-    return spectral_gap_on(request.scene, grid, 1e-2 * request.tol)[0]
+    return gap_on_grid(request.scene, grid, 1e-2 * request.tol)[0]
 
 
 # References

@@ -17,11 +17,14 @@ class Refined:
         Its estimated error; None if there was one level only.
     met : bool
         Whether the error is small enough.
+    solutions : tuple
+        On all levels that were tried, the finest last.
     """
 
     value: Any
     error: Any
     met: bool
+    solutions: tuple = ()
 
 
 def until_agreement(
@@ -61,7 +64,7 @@ def until_agreement(
             continue
         estimate = error(solutions)
         if met(solutions[-1], estimate):
-            return Refined(solutions[-1], estimate, True)
+            return Refined(solutions[-1], estimate, True, tuple(solutions))
         if hopeless(solutions[-1], estimate):
             break
-    return Refined(solutions[-1], estimate, False)
+    return Refined(solutions[-1], estimate, False, tuple(solutions))

@@ -13,7 +13,7 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import fitted, solver
-from nonsmooth.statistics.gamma2_on_grids import growth_to
+from nonsmooth.statistics.gamma2_on_grids import gamma2_by_combination
 
 _DEPTH = 16.0  # the density outside the box is of the order exp(-16) of its maximum
 _LARGEST = 3000  # nodes with g != 0: a minute
@@ -71,7 +71,7 @@ def leading(scene, tol=1e-3):
         if errors.max() <= tol:
             break
         grid, best = grid.all_raised(), values[0]
-    gamma2, uncertainty = growth_to(scene, _GROWTH)
+    gamma2, uncertainty = gamma2_by_combination(scene, _GROWTH)
     return (
         Leading(gamma2 / 2, *map(float, values)),
         Leading(uncertainty / 2, *map(float, errors)),

@@ -1,38 +1,69 @@
-"""gamma^2 of scenes with several variables, on tensor grids that are refined until it settles."""
+"""gamma^2 = 2 E[g u] with u the Poisson solution of g (Theorem thm3), on tensor grids.
+
+For two variables the grids are refined in both of them first, which is the cheapest if few levels
+do. Otherwise, and for more variables, the combination technique finds out how fine each variable
+must be; what the grids beyond those combined would add is the error.
+"""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.estimate import require
-from nonsmooth.grids import tuning
+from nonsmooth.grids import tuning as grid_tuning
+from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.combination_technique import Combination
 from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.mesh.box import narrowed
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.grids.tensor_grid import depth_for, fitted, points, solver
-from nonsmooth.grids.uniform_refinement import refined
+from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, points, solver
+from nonsmooth.refine import Refined, until_agreement
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x, y
-
-# levels by the number of variables: of the grids for box and shift, of the coarsest for gamma^2
-_FITTED, _COARSE = {2: 2, 3: 1, 4: 0}, {2: 2, 3: 1, 4: 1}
-_ACCURACY = 0.02  # residual of the iteration, relative to the tolerance, to begin with
+from nonsmooth.statistics import tuning
 
 
-_ITERATION = 0.1  # what a tenth of the residual may change, relative to the tolerance
+def gamma2(scene: Scene, tol: float) -> tuple[float, float]:
+    """Compute gamma^2 to a relative tolerance, by the method that suits the scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        With two to four state variables.
+    tol : float
+
+    Returns
+    -------
+    value, error : float
+
+    Raises
+    ------
+    ToleranceError
+        As of `gamma2_by_combination`.
+    """
+    if uniform_refinement.applies(scene):
+        found = gamma2_by_uniform_refinement(scene, tol)
+        if found.met:
+            return found.value, found.error
+    return gamma2_by_combination(scene, tol)
 
 
-_STIFF = {True: 1e12, False: 1e7}  # n that stands for inf, for elastic walls and otherwise
+def gamma2_on(scene: Scene, grid: Grid, accuracy: float) -> float:
+    """Compute gamma^2 on one grid.
 
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    grid : Grid
+    accuracy : float
+        Residual of the Poisson solver.
 
-_LONG = 100.0  # correlation time of a slow scene, relative to that of its damping
-
-
-_WORK = 8  # largest grids that may be spent on one value
-
-
-def growth_rate(scene, grid, accuracy):
-    """gamma^2 = 2 E[g u] on one grid, u the Poisson solution of g (Theorem thm3)."""
+    Returns
+    -------
+    float
+    """
     axes, solve = solver(scene, grid)
     g = solve.fold(evaluate(scene.numerical_observable(), axes))
     u, mean = solve.solve(g, ODD, accuracy)
@@ -40,29 +71,56 @@ def growth_rate(scene, grid, accuracy):
     return 2 * half
 
 
-def correlation_time(scene, grid, growth, accuracy):
-    """Integral over time of the correlation of g, gamma^2 / (2 Var g), given gamma^2 = growth."""
+def correlation_time(scene: Scene, grid: Grid, value: float, accuracy: float) -> float:
+    """Integral over time of the correlation of g, gamma^2 / (2 Var g), given gamma^2 = value."""
     axes, solve = solver(scene, grid)
     g = solve.fold(evaluate(scene.numerical_observable(), axes))
     _, mean = solve.solve(g, ODD, accuracy)
     _, variance = solve.solve((g - mean) ** 2, EVEN, accuracy)
-    return growth / (2 * variance)
+    return value / (2 * variance)
 
 
-def growth_to(scene, tol):
-    """Compute gamma^2 to a relative tolerance.
+def gamma2_by_uniform_refinement(scene: Scene, tol: float) -> Refined:
+    """Compute gamma^2 of a scene to which `uniform_refinement` applies.
 
     Parameters
     ----------
     scene : Scene
-        n = inf is approached by a large n and the known rate of convergence.
+        With two state variables and a finite n.
+    tol : float
+        Relative.
+
+    Returns
+    -------
+    Refined
+        As of `uniform_refinement.refined`.
+    """
+    rounding = tuning.GAMMA2_ON_GRIDS.rounding
+
+    def solve(grid):
+        value = gamma2_on(scene, grid, tol)
+        return value, rounding / 2 * tol * abs(value)
+
+    return uniform_refinement.refined(
+        fitted(scene, depth_for(tol), 1), solve, lambda error, value: error / (tol * abs(value))
+    )
+
+
+def gamma2_by_combination(scene: Scene, tol: float) -> tuple[float, float]:
+    """Compute gamma^2 to a relative tolerance, by the combination technique.
+
+    Parameters
+    ----------
+    scene : Scene
+        With two to four state variables. n = inf is approached by a large n and the known rate of
+        convergence.
     tol : float
 
     Returns
     -------
     value, error : float
-        The error is what grids beyond those combined may add, see `Combination.error`; to it come
-        the box, the residuals and n.
+        The error is what grids beyond those combined may add, see `Combination.error`, and what
+        the box, the residuals and n change.
 
     Raises
     ------
@@ -71,13 +129,15 @@ def growth_to(scene, tol):
         transitions make the equation ill-conditioned, their time scale.
     """
     if not math.isinf(scene.n):
-        return _refined(scene, tol)[:2]
-    # ASSUME: METHODS' empirical rates, n^(-1/2) where a wall is hit elastically, else 1/n
+        return _combined(scene, tol)[:2]
+    chosen = tuning.GAMMA2_ON_GRIDS
+    # the rates of convergence are n^(-1/2) where a wall is hit elastically, else 1/n
     elastic = scene.mechanics.in_potential
-    stiff, softer = _STIFF[elastic], 1e-2 * _STIFF[elastic]
-    value, error, below, accuracy = _refined(scene.with_n(stiff), tol / 2)
+    stiff = chosen.stiff_elastic if elastic else chosen.stiff
+    softer = chosen.softer * stiff
+    value, error, below, accuracy = _combined(scene.with_n(stiff), tol / 2)
     fitted_below = replace(below, ends=narrowed(scene.with_n(softer), below.ends, below.ends))
-    gap = growth_rate(scene.with_n(stiff), below, accuracy) - growth_rate(
+    gap = gamma2_on(scene.with_n(stiff), below, accuracy) - gamma2_on(
         scene.with_n(softer), fitted_below, accuracy
     )
     rest = gap / ((10 if elastic else 100) - 1)
@@ -86,101 +146,102 @@ def growth_to(scene, tol):
     return value, error
 
 
-def _refined(scene, tol):
+def _combined(scene, tol):
     """gamma^2, its error, the dearest of the combined grids, and the residual."""
-    count = scene.dimension
-    coarse = fitted(scene, depth_for(tol), _FITTED[count])
-    coarse = coarse.all_raised(_COARSE[count] - _FITTED[count])
-    base, accuracy, residual = _iterated(scene, coarse, tol)
-    larger = growth_rate(scene, coarse.enlarged(), accuracy)
+    chosen, count = tuning.GAMMA2_ON_GRIDS, scene.dimension
+    coarse = fitted(scene, depth_for(tol), chosen.fitted[count])
+    coarse = coarse.all_raised(chosen.coarse[count] - chosen.fitted[count])
+    base, accuracy, residual = _on_coarsest(scene, coarse, tol)
+    larger = gamma2_on(scene, coarse.enlarged(), accuracy)
     directions = _directions(coarse)
 
     def grid(index):
         levels = {s: level for part, level in zip(directions, index, strict=True) for s in part}
         return replace(coarse, levels=levels)
 
+    def other_errors(value):
+        return 2 * abs(larger - base) + residual * abs(value)
+
     combination = Combination(
         tuple(coarse.levels[part[0]] for part in directions),
         base,
-        lambda index: growth_rate(scene, grid(index), accuracy),
+        lambda index: gamma2_on(scene, grid(index), accuracy),
         lambda index: points(scene, grid(index)),
     )
-    largest = tuning.TENSOR_GRIDS.largest[count]
-    left = _WORK * largest
+    value, error = _enlarged(
+        combination, other_errors, tol, grid_tuning.TENSOR_GRIDS.largest[count]
+    )
+    best = grid(combination.dearest())
+    if error > tol * abs(value):
+        _refuse(scene, best, value, error, tol, accuracy)
+    return value, error, best, accuracy
+
+
+def _enlarged(combination, other_errors, tol, largest):
+    """Add grids to a combination until its error is small enough, or nothing affordable is left."""
+    left = tuning.GAMMA2_ON_GRIDS.work * largest
     while True:
         value = combination.value
-        error = combination.error + 2 * abs(larger - base) + residual * abs(value)
+        error = combination.error + other_errors(value)
         if error <= tol * abs(value):
-            break
+            return value, error
         try:
             cost = combination.refine(min(largest, left))
         except ToleranceError:  # a finer grid on which the iteration does not converge
-            break
+            return value, error
         left -= cost
         if not cost:
-            break
-    best = grid(combination.dearest())
-    if error > tol * abs(value):
-        time = abs(correlation_time(scene, best, value, accuracy))
-        slow = time > _LONG * max(scene.damping, 1 / scene.damping)
-        cure = f"the scene mixes slowly, g stays correlated for some {time:.0e}; loosen tol"
-        require(False, value, error, tol, cure if slow else "loosen tol")
-    return value, error, best, accuracy
+            return value, error
+
+
+def _refuse(scene, grid, value, error, tol, accuracy):
+    """Raise a `ToleranceError` that says whether the scene mixes slowly."""
+    time = abs(correlation_time(scene, grid, value, accuracy))
+    slow = time > tuning.GAMMA2_ON_GRIDS.long * max(scene.damping, 1 / scene.damping)
+    cure = f"the scene mixes slowly, g stays correlated for some {time:.0e}; loosen tol"
+    require(False, value, error, tol, cure if slow else "loosen tol")
 
 
 def _directions(grid):
     """Group the variables that are refined together.
 
-    Those of the oscillator are, beside noise of its own: transport mixes them, so that what they
-    change together is no smaller than what one of them changes.
+    Displacement and velocity are: transport mixes them, so that what they change together is no
+    smaller than what one of them changes. The variables of the noise are refined one by one.
     """
     noise = [(symbol,) for symbol in grid.levels if symbol not in (y, x)]
     return [*noise, tuple(symbol for symbol in grid.levels if symbol in (y, x))]
 
 
-def _iterated(scene, grid, tol):
+def _on_coarsest(scene, grid, tol):
     """gamma^2 on a grid, the residual that it needs, and what that leaves of relative error.
 
-    The norm of a residual says little: it is largest where there is no mass, and may stagnate
-    there.
+    The norm of a residual says little about the error: it is largest where there is no mass, and
+    may stagnate there. So the residual is reduced until gamma^2 no longer changes.
     """
-    accuracy = tol * _ACCURACY
-    value = growth_rate(scene, grid, accuracy)
+    chosen = tuning.GAMMA2_ON_GRIDS
+    accuracy = tol * chosen.residual
     if len(grid.levels) <= 2:
-        return value, accuracy, accuracy
+        return gamma2_on(scene, grid, accuracy), accuracy, accuracy
+    refined = until_agreement(
+        _tenths(accuracy),
+        lambda accuracy: (gamma2_on(scene, grid, accuracy), accuracy),
+        lambda found: abs(found[-1][0] - found[-2][0]) / abs(found[-1][0]),
+        met=lambda _, change: change <= chosen.iteration * tol,
+    )
+    value, accuracy = refined.solutions[-2]  # that the last changed so little shows it good enough
+    return value, accuracy, max(2 * refined.error, accuracy)
+
+
+def _tenths(number: float) -> Iterator[float]:
     while True:
-        finer = growth_rate(scene, grid, accuracy / 10)
-        change = abs(finer - value) / abs(finer)
-        if change <= _ITERATION * tol:
-            return value, accuracy, max(2 * change, accuracy)
-        value, accuracy = finer, accuracy / 10
-
-
-_RESIDUE = 1e-3  # of the tolerance, for rounding
+        yield number
+        number = number / 10
 
 
 def growth_on_ladder(scene, tol):
-    """Compute gamma^2 of a scene to which this `applies`.
-
-    Parameters
-    ----------
-    scene : Scene
-    tol : float
-        Relative.
-
-    Returns
-    -------
-    (value, error) or None
-        As of `climb`.
-    """
-
-    def solve(grid):
-        value = growth_rate(scene, grid, tol)
-        return value, _RESIDUE / 2 * tol * abs(value)
-
-    found = refined(
-        fitted(scene, depth_for(tol), 1),
-        solve,
-        lambda error, value: error / (tol * abs(value)),
-    )
+    """Return the value and error of `gamma2_by_uniform_refinement`, or None."""
+    found = gamma2_by_uniform_refinement(scene, tol)
     return (found.value, found.error) if found.met else None
+
+
+growth_to = gamma2_by_combination

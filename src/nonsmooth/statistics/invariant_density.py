@@ -1,30 +1,36 @@
-"""The invariant density of Z^n (Theorem thm1) and its marginals, without Monte Carlo."""
+"""The invariant density of Z^n (Theorem thm1) and its marginals, without Monte Carlo.
+
+Dry friction and obstacles with white noise have closed forms. Elsewhere the masses of the
+discretised invariant measure at the nodes of a tensor grid are divided by the nodes' weights.
+"""
 
 import math
+from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 
 import numpy as np
 import xarray as xr
 from numpy.polynomial.legendre import leggauss
+from numpy.typing import ArrayLike
 from scipy.integrate import quad
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.mesh.box import half_widths
 from nonsmooth.grids.mesh.edges import kinks
+from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.line import quadrature
+from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
-
-_POINTS = 201
-_EXACT = {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2}  # tolerance unless given, by the number of variables
-_DEEP = 80.0  # depth up to which closed forms are normalised
-_GAUSS = 16  # points per piece of a bin
-_RESIDUAL = 0.05  # of the iteration, relative to the tolerance
+from nonsmooth.statistics import tuning
 
 
-def invariant_density(scene, tol=None, points=None):
+def invariant_density(
+    scene: Scene, tol: float | None = None, points: Mapping[str, ArrayLike] | None = None
+) -> xr.Dataset:
     """Invariant density: marginals of every variable and of the last two together.
 
     Parameters
@@ -54,36 +60,82 @@ def invariant_density(scene, tol=None, points=None):
         If `tol` cannot be met; the message has the error reached.
     """
     _require_finite(scene)
-    tol = _EXACT[scene.dimension] if tol is None else tol
+    tol = tuning.INVARIANT_DENSITY.tol[scene.dimension] if tol is None else tol
     if closed := closed_form(scene):
         if points is None:
-            ends = half_widths(scene, tensor_grid.depth_for(tol))
-            points = {s.name: np.linspace(-end, end, _POINTS) for s, end in ends.items()}
-        found = {(name,): closed[name](points[name])[0] for name in closed}
-        error = {(name,): np.max(closed[name](points[name])[1]) for name in closed}
-        if len(closed) > 1:
-            found["y", "x"] = np.outer(found["y",], found["x",])
-            error["y", "x"] = error["y",] * found["x",].max() + error["x",] * found["y",].max()
-        return _dataset(found, error, points)
+            points = _equidistant(half_widths(scene, tensor_grid.depth_for(tol)))
+        return _dataset(*_of_closed_form(closed, points), points)
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     if points is None:
-        points = {symbol.name: np.linspace(-end, end, _POINTS) for symbol, end in grid.ends.items()}
+        points = _equidistant(grid.ends)
     names = [symbol.name for symbol in STATE_VARIABLES if symbol.name in scene.state]
-    accuracy, found = tol * _RESIDUAL, None
-    while True:
-        previous, found = found, _on(scene, grid, names, points, accuracy)
-        if previous is not None:
-            error = {key: np.max(np.abs(found[key] - previous[key])) for key in found}
-            relative = max(error[key] / np.max(found[key]) for key in found)
-            if relative <= tol:
-                break
-        grid = grid.all_raised()
-        if not tensor_grid.affordable(scene, grid):
-            raise ToleranceError(
-                f"the invariant density has a relative error of {relative:.1e} on the finest grid, "
-                f"above tol = {tol:g}; loosen tol"
-            )
-    return _dataset(found, error, points)
+    accuracy = tol * tuning.INVARIANT_DENSITY.residual
+    found, difference = _refined(
+        scene, grid, tol, lambda grid: densities_on(scene, grid, names, points, accuracy)
+    )
+    return _dataset(found, {key: np.max(difference[key]) for key in found}, points)
+
+
+def _equidistant(ends):
+    count = tuning.INVARIANT_DENSITY.points
+    return {symbol.name: np.linspace(-end, end, count) for symbol, end in ends.items()}
+
+
+def _of_closed_form(closed, points):
+    """Densities and their errors; the variables are independent."""
+    found = {(name,): closed[name](points[name])[0] for name in closed}
+    error = {(name,): np.max(closed[name](points[name])[1]) for name in closed}
+    if len(closed) > 1:
+        found["y", "x"] = np.outer(found["y",], found["x",])
+        error["y", "x"] = error["y",] * found["x",].max() + error["x",] * found["y",].max()
+    return found, error
+
+
+def _refined(scene, grid, tol, solve):
+    """Refine a grid until two levels agree.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : Grid
+        The first.
+    tol : float
+        Error allowed, relative to the largest value of each array.
+    solve : callable
+        Takes a grid; returns a dict of arrays.
+
+    Returns
+    -------
+    values, differences : dict
+        Of the last two grids.
+    """
+
+    def difference(found):
+        return {key: np.abs(found[-1][key] - found[-2][key]) for key in found[-1]}
+
+    def relative(values, difference):
+        return max(np.max(difference[key]) / np.max(values[key]) for key in values)
+
+    result = until_agreement(
+        _affordable(scene, grid),
+        solve,
+        difference,
+        met=lambda values, difference: relative(values, difference) <= tol,
+    )
+    if result.met:
+        return result.value, result.error
+    reached = "unknown" if result.error is None else f"{relative(result.value, result.error):.1e}"
+    raise ToleranceError(
+        f"the invariant density has a relative error of {reached} on the finest grid, "
+        f"above tol = {tol:g}; loosen tol"
+    )
+
+
+def _affordable(scene: Scene, grid: Grid) -> Iterator[Grid]:
+    """Yield a grid and finer ones, as long as they can be solved on."""
+    yield grid
+    while tensor_grid.affordable(scene, grid := grid.all_raised()):
+        yield grid
 
 
 def _dataset(found, error, points):
@@ -100,7 +152,7 @@ def _require_finite(scene):
         )
 
 
-def closed_form(scene):
+def closed_form(scene: Scene) -> dict[str, Callable]:
     """Marginal densities of the scenes whose variables are independent and known in closed form.
 
     Returns
@@ -117,7 +169,7 @@ def closed_form(scene):
     inverse = 2 * scene.damping / scene.noise.sigma**2
     U = scene.potential_expression + scene.mechanics.added_potential
     energy = vectorised(U.subs(penalization, scene.n), (STATE_VARIABLES[-1],))
-    end = half_widths(scene, _DEEP)[STATE_VARIABLES[-1]]
+    end = half_widths(scene, tuning.INVARIANT_DENSITY.deepest)[STATE_VARIABLES[-1]]
     lowest = float(np.min(energy(np.linspace(-end, end, 2001))))
     wall, _, _ = scene.mechanics.penalty.at(scene.n)
     pieces = [-end, -wall, 0.0, wall, end]
@@ -140,7 +192,9 @@ def closed_form(scene):
     return {"y": velocity, "x": displacement}
 
 
-def bin_averages(scene, edges, tol):
+def bin_averages(
+    scene: Scene, edges: Mapping[str, ArrayLike], tol: float
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Invariant probabilities of bins, divided by their widths: what a histogram estimates.
 
     Where friction or a wall concentrates the density, averages converge on grids on which its
@@ -169,51 +223,48 @@ def bin_averages(scene, edges, tol):
     """
     _require_finite(scene)
     if closed := closed_form(scene):
-        found, error = {}, {}
-        for name, ends in edges.items():
-            points, weights = _averaging(ends, _kinks(scene, name))
-            value, inexact = closed[name](points)
-            found[name] = weights @ value
-            coarse, fewer = _averaging(ends, _kinks(scene, name), _GAUSS - 6)
-            other = fewer @ closed[name](coarse)[0]
-            error[name] = np.abs(found[name] - other) + weights @ inexact
-        return {name: (found[name], error[name]) for name in found}
+        return _averages_of_closed_form(scene, closed, edges)
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
-    found = None
-    while True:
-        previous, found = found, _averages_on(scene, grid, edges, tol * _RESIDUAL)
-        if previous is not None:
-            error = {name: np.abs(found[name] - previous[name]) for name in found}
-            relative = max(np.max(error[name]) / np.max(found[name]) for name in found)
-            if relative <= tol:
-                return {name: (found[name], error[name]) for name in found}
-        grid = grid.all_raised()
-        if not tensor_grid.affordable(scene, grid):
-            raise ToleranceError(
-                f"the invariant density has a relative error of {relative:.1e} on the finest grid, "
-                f"above tol = {tol:g}; loosen tol"
-            )
+    accuracy = tol * tuning.INVARIANT_DENSITY.residual
+    found, error = _refined(
+        scene, grid, tol, lambda grid: _averages_on(scene, grid, edges, accuracy)
+    )
+    return {name: (found[name], error[name]) for name in found}
+
+
+def _averages_of_closed_form(scene, closed, edges):
+    """Averages and their errors, by Gauss quadrature in each bin."""
+    chosen, averages = tuning.INVARIANT_DENSITY, {}
+    for name, ends in edges.items():
+        points, weights = _averaging(ends, _cuts(scene, name), chosen.gauss)
+        value, inexact = closed[name](points)
+        average = weights @ value
+        coarse, fewer = _averaging(ends, _cuts(scene, name), chosen.fewer)
+        error = np.abs(average - fewer @ closed[name](coarse)[0]) + weights @ inexact
+        averages[name] = average, error
+    return averages
 
 
 def _averages_on(scene, grid, edges, accuracy):
     axes, solve = tensor_grid.solver(scene, grid)
     masses = solve.stationary(accuracy).reshape([len(axis.nodes) for axis in axes.values()])
-    found = {}
+    found, gauss = {}, tuning.INVARIANT_DENSITY.gauss
     for place, (symbol, axis) in enumerate(axes.items()):
         if symbol.name in edges:
             marginal = masses.sum(axis=tuple(k for k in range(len(axes)) if k != place))
-            points, weights = _averaging(edges[symbol.name], axis.edges)
+            points, weights = _averaging(edges[symbol.name], axis.edges, gauss)
             found[symbol.name] = weights @ (axis.interpolation(points) @ (marginal / axis.weights))
     return found
 
 
-def _kinks(scene, name):
+def _cuts(scene, name):
+    """Return the kinks of one variable, at which bins are cut."""
     return np.array([k for s, k in kinks(scene).items() if s.name == name for k in (-k, k)])
 
 
-def _averaging(edges, cuts, count=None):
+def _averaging(edges, cuts, count):
     """Points, and the matrix that takes values there to averages over bins, cut at kinks."""
-    nodes, gauss = leggauss(count or _GAUSS)
+    nodes, gauss = leggauss(count)
     inside = cuts[(cuts > edges[0]) & (cuts < edges[-1])]
     pieces = np.unique(np.concatenate([edges, inside]))
     half = np.diff(pieces) / 2
@@ -224,7 +275,31 @@ def _averaging(edges, cuts, count=None):
     return points, weights.reshape(len(edges) - 1, -1) / np.diff(edges)[:, None]
 
 
-def _on(scene, grid, names, points, accuracy):
+def densities_on(
+    scene: Scene,
+    grid: Grid,
+    names: list[str],
+    points: Mapping[str, ArrayLike],
+    accuracy: float | None,
+) -> dict[tuple[str, ...], np.ndarray]:
+    """Marginal densities on one grid.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : Grid
+    names : list of str
+        Of all variables of the state; the last two get a joint density, too.
+    points : dict
+        Maps names to points.
+    accuracy : float
+        Residual of the solver; a direct one needs none.
+
+    Returns
+    -------
+    dict
+        Maps tuples of names to values at the points.
+    """
     axes, solve = tensor_grid.solver(scene, grid)
     shape = [len(axis.nodes) for axis in axes.values()]
     masses = solve.stationary(accuracy).reshape(shape)

@@ -5,35 +5,33 @@ With -A u = g - E g and -A h = 2 (g - E g) u - gamma^2, and P the semigroup of A
     w(tau) = u - r(tau),  E Delta^2 = gamma^2 tau + h - k(tau),
     r_t = A r,  k_t = A k + 2 (g - E g) r,  (k, r) = (h, u) at 0,
 
-so that errors do not grow with tau. A is not sectorial: the pair (k, r) is projected, in L^2 of the
-invariant measure, on a rational Krylov space, whose poles are real and cost one factorisation
-each. The pole 0 is the Poisson solver and knows the slowest modes; the others resolve early times.
+so that errors do not grow with tau. A is not sectorial, so that integrals of its resolvent along a
+contour are of little use. Instead the pair (k, r) is projected, in L^2 of the invariant measure, on
+a rational Krylov space, whose poles are real and cost one factorisation each. The pole 0 is the
+Poisson solver and resolves the slowest modes; the others resolve early times.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import scipy.linalg
+from numpy.typing import ArrayLike
+from sympy import Symbol
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids import tensor_grid, tuning, uniform_refinement
+from nonsmooth.grids import tensor_grid, uniform_refinement
+from nonsmooth.grids import tuning as grid_tuning
+from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
-
-_POLES = (0.0, 10.0)  # larger ones resolve earlier times, and what the grid does not
-_STEPS = range(12, 85, 6)  # dimensions of the Krylov space that are compared
-_SHARE = 0.05  # of the tolerance, for the projection
-_COARSE, _FINEST = 1, 9  # levels
-_LARGEST = 45_000  # grid points; each pole keeps its factors in memory
-_DEPENDENT = 1e-10  # a function this much smaller without what it shares with others
-_ROUNDING = 3e-11  # relative; against linear scenes it comes to 9e-12
-_GROWTH = 1e-12  # relative rate from which on a mode is taken to grow
-_APART = 1.8  # ratio of times at which the oscillation of errors is sampled
-_AROUND = 1.25  # the box holds the starting point with so much to spare
+from nonsmooth.grids.tensor_grid import Grid
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics import tuning
 
 
-def moments(scene, times, tol):
+def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np.ndarray]:
     """Solve for w(start, tau) and v(start, tau), eq. (defvgyt).
 
     Parameters
@@ -48,10 +46,10 @@ def moments(scene, times, tol):
     Returns
     -------
     moments, errors : numpy.ndarray, shape (2, t)
-        w and v. The errors are those of `ladder.climb`; where that fails, what the last refinement
-        of the grid changes or, if larger, the sum of what its variables change each for itself,
-        and the box and the projection. They oscillate with tau, relative to which each is the
-        largest between tau / 2 and 2 tau.
+        w and v. The errors are those of `uniform_refinement.refined`. Where that fails, they are
+        what the last refinement of the grid changes or, if larger, the sum of what each variable
+        changes for itself, and the errors of the box and of the projection. Errors oscillate with
+        tau: each is relative to tau the largest between tau / 2 and 2 tau.
 
     Raises
     ------
@@ -62,20 +60,20 @@ def moments(scene, times, tol):
     scale = np.where(times > 0, times, 1.0)
 
     def solve(grid):
-        return _on(scene, grid, times, _SHARE * tol * scale)
+        return moments_on(scene, grid, times, tuning.MOMENTS_ON_GRIDS.projection * tol * scale)
 
     def share(error, _values):
         return np.max(error[1] / (tol * scale))
 
-    grid = _first_grid(scene, tol)
-    refined = uniform_refinement.refined(grid, solve, share)
-    if refined.met:
-        last, error = refined.value, refined.error
+    grid = first_grid(scene, tol)
+    uniform = uniform_refinement.refined(grid, solve, share)
+    if uniform.met:
+        last, error = uniform.value, uniform.error
     else:
         last, error = _refined(scene, grid, solve, share)
     # w is the difference of terms as large as the standard deviation
     w, v = np.abs(last)
-    error += _ROUNDING * np.array([w + np.sqrt(v), v + w**2])
+    error += tuning.MOMENTS_ON_GRIDS.rounding * np.array([w + np.sqrt(v), v + w**2])
     if not np.all(np.isfinite(error)):
         raise ToleranceError(
             "v(tau) has no stable projection on the grids of this scene; use simulate, or another n"
@@ -88,7 +86,12 @@ def moments(scene, times, tol):
 
 
 def _refined(scene, grid, solve, share):
-    """Refine where it matters; what comes closest to the tolerance, with its error."""
+    """Refine the variables that matter; return what comes closest to the tolerance, and its error.
+
+    Which variables the next grid raises depends on what each changes on this one, so that the
+    grids are no sequence known beforehand.
+    """
+    gain = grid_tuning.UNIFORM_REFINEMENT.gain
     value, inexact = solve(grid)
     least = dict.fromkeys(grid.levels, 0.0)
     while True:
@@ -100,10 +103,7 @@ def _refined(scene, grid, solve, share):
             finer = finer.raised(symbol)
         if not coarse or not _affordable(scene, finer.all_raised()):
             break
-        grid, least = (
-            finer,
-            least | {s: changes[s] / tuning.UNIFORM_REFINEMENT.gain for s in coarse},
-        )
+        grid, least = finer, least | {s: changes[s] / gain for s in coarse}
         value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
     last, inexact = solve(grid.all_raised())
     beyond = np.abs(solve(grid.enlarged())[0] - value)
@@ -116,25 +116,46 @@ def _with_neighbours(times):
     if not len(positive):
         return np.unique(times)
     first, last = positive.min() / 2, 2 * positive.max()
-    count = 1 + math.ceil(math.log(last / first) / math.log(_APART))
+    count = 1 + math.ceil(math.log(last / first) / math.log(tuning.MOMENTS_ON_GRIDS.apart))
     return np.unique(np.concatenate([times, np.geomspace(first, last, count)]))
 
 
-def _first_grid(scene, tol):
+def first_grid(scene: Scene, tol: float) -> Grid:
+    """Return the coarsest grid, whose box holds the invariant density and the starting point."""
+    chosen = tuning.MOMENTS_ON_GRIDS
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     ends = {
-        symbol: max(end, _AROUND * abs(scene.start.get(symbol.name, 0.0)))
+        symbol: max(end, chosen.around * abs(scene.start.get(symbol.name, 0.0)))
         for symbol, end in grid.ends.items()
     }
-    return replace(grid, ends=ends, levels=dict.fromkeys(grid.levels, _COARSE))
+    return replace(grid, ends=ends).at_level(chosen.coarsest)
 
 
 def _affordable(scene, grid):
-    return tensor_grid.points(scene, grid) <= _LARGEST and max(grid.levels.values()) <= _FINEST
+    chosen = tuning.MOMENTS_ON_GRIDS
+    few = tensor_grid.points(scene, grid) <= chosen.largest
+    return few and max(grid.levels.values()) <= chosen.finest
 
 
-def _on(scene, grid, times, allowed):
-    """Solve for w and v on one grid; with what the last Krylov vectors change in them."""
+def moments_on(
+    scene: Scene, grid: Grid, times: np.ndarray, allowed: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solve for w and v on one grid.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : Grid
+    times : numpy.ndarray, shape (t,)
+        tau >= 0, "1".
+    allowed : array_like
+        Error of v that the projection may have.
+
+    Returns
+    -------
+    moments, changes : numpy.ndarray, shape (2, t)
+        w and v, and what the last Krylov vectors change in them; nan if no projection is stable.
+    """
     axes, solver = tensor_grid.solver(scene, grid)
     g = solver.fold(evaluate(scene.numerical_observable(), axes))
     u, mean = solver.solve(g, ODD)
@@ -146,9 +167,9 @@ def _on(scene, grid, times, allowed):
     h, gamma2 = solver.solve(2 * g * u, EVEN)
     krylov = _Krylov(solver, g, masses)
     slow, fast = _Functions(masses, [np.ones_like(g), h]), _Functions(masses, [u, g])
-    at = _at_start(scene, axes)
+    at = at_start(scene, axes)
     found = inexact = np.full((2, len(times)), np.nan)
-    for dimension in _STEPS:
+    for dimension in tuning.MOMENTS_ON_GRIDS.dimensions:
         krylov.enlarge(dimension, slow, fast)
         value = _evolve(solver, slow, fast, g, (h, u), gamma2, times, at)
         if value is None:
@@ -182,7 +203,7 @@ class _Functions:
         for _ in range(2):
             rest = rest - self.dot(rest) @ self.rows
         size = math.sqrt(self.masses @ rest**2)
-        if size < _DEPENDENT:
+        if size < tuning.MOMENTS_ON_GRIDS.dependent:
             return False
         self.rows = np.vstack([self.rows, rest / size])
         return True
@@ -198,8 +219,9 @@ class _Krylov:
 
     def enlarge(self, dimension, slow, fast):
         """Add pairs up to a dimension, and their parts to the two lists of functions."""
+        poles = tuning.MOMENTS_ON_GRIDS.poles
         while len(self.pairs.rows) < dimension and not self.exhausted:
-            shift = _POLES[len(self.pairs.rows) % len(_POLES)]
+            shift = poles[len(self.pairs.rows) % len(poles)]
             k, r = np.split(self.pairs.rows[-1], 2)
             r = self._resolvent(r, ODD, shift)
             k = self._resolvent(k + 2 * self.g * r, EVEN, shift)
@@ -225,7 +247,7 @@ def _evolve(solver, slow, fast, g, start, gamma2, times, at):
     matrix[:many, :many] = slow.dot(solver.matrix(EVEN) @ slow.rows.T)
     matrix[:many, many:-1] = slow.dot(2 * g[:, None] * fast.rows.T)
     matrix[many:-1, many:-1] = fast.dot(solver.matrix(ODD) @ fast.rows.T)
-    # grids have spurious growing modes of high frequency; a space that has caught one is of no use
+    # grids have spurious modes of high frequency that grow; a space that holds one is of no use
     if _grows(matrix[1:many, 1:many]) or _grows(matrix[many:-1, many:-1]):
         return None
     # the exponential's last column is the change since the start, without cancellation
@@ -236,11 +258,24 @@ def _evolve(solver, slow, fast, g, start, gamma2, times, at):
 
 
 def _grows(matrix):
-    return np.max(np.linalg.eigvals(matrix).real, initial=0.0) > _GROWTH * np.max(np.abs(matrix))
+    fastest = np.max(np.linalg.eigvals(matrix).real, initial=0.0)
+    return fastest > tuning.MOMENTS_ON_GRIDS.growing * np.max(np.abs(matrix))
 
 
-def _at_start(scene, axes):
-    """Return what evaluates functions (rows) of a parity at the starting point."""
+def at_start(scene: Scene, axes: dict[Symbol, Axis]) -> Callable:
+    """Return what evaluates functions at the starting point.
+
+    Parameters
+    ----------
+    scene : Scene
+    axes : dict
+        See `mesh.axes`.
+
+    Returns
+    -------
+    callable
+        Takes a solver, functions in rows and their parity; returns values.
+    """
     start, mirrored = (start_row(scene, axes, side) for side in (1, -1))
 
     def at(solver, rows, parity):

@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import replace
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 import numpy as np
@@ -10,19 +10,16 @@ import scipy.sparse.linalg as spla
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
-from nonsmooth.grids import tensor_grid, tuning
+from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.line import eigenfunctions
-
-_WANTED = 6  # eigenvalues computed; the slowest pair may be complex
-_FIT, _FINEST = 1, 8  # levels: where the box is fitted, and the last
-_SHARE = 1e-2  # of the tolerance, for the iteration
-# relative; against linear scenes it comes to 2e-12, and what moves eigenvalues that coincide apart
-# to 2e-13
-_ROUNDING, _BACKWARD = 2e-11, 5e-13
+from nonsmooth.refine import until_agreement
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics import tuning
 
 
-def spectral_gap(scene, tol=1e-6):
+def spectral_gap(scene: Scene, tol: float = 1e-6) -> Estimate:
     """Smallest real part of the non-zero eigenvalues of -A_n.
 
     Parameters
@@ -48,58 +45,93 @@ def spectral_gap(scene, tol=1e-6):
     """
     began = time.perf_counter()
     if scene.is_line:
-        solve, levels = _of_polynomials, (8, 12, 16, 20, 24)
+        levels, solve, box = _with_one_variable(scene)
     elif scene.dimension == 2 and not math.isinf(scene.n):
-        grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), _FIT)
-
-        def solve(scene, level, margin=0.0):
-            levels = dict.fromkeys(grid.levels, level)
-            return _on(scene, replace(grid, levels=levels, margin=margin), _SHARE * tol)
-
-        levels = range(_FINEST + 1)
+        levels, solve, box = _with_two_variables(scene, tol)
     else:
         raise SceneError(
             f"the spectral gap is computed for one or two state variables and, for two, a finite "
             f"n, not for ({', '.join(scene.state)}) at n = {scene.n:g}; measure the decay of "
             "correlations by Monte Carlo"
         )
-    found, changes = [solve(scene, levels[0])[0]], []
-    unseen = iter(levels)  # on which the effect of the box has not been measured
-    for level in levels[1:]:
-        value, rounding = solve(scene, level)
-        changes.append(max(abs(value - found[-1]), rounding))
-        found.append(value)
-        fall = max((b / a for a, b in pairwise(changes[-3:])), default=1.0)
-        error = changes[-1] * math.sqrt(min(fall, 1.0)) + rounding
-        while error <= tol * value:
-            if scene.dimension == 1:
-                beyond = 0.0
-            else:
-                coarse = next(unseen)
-                beyond = 2 * abs(
-                    solve(scene, coarse, tuning.TENSOR_GRIDS.margin)[0] - found[coarse]
-                )
-            if error + beyond <= tol * value:
-                seconds = time.perf_counter() - began
-                return Estimate(value, error + beyond, "spectral elements", seconds)
-            if coarse == level:
-                break
-    raise ToleranceError(
-        f"the spectral gap {value:.10g} has an error of {error:.1e}, above tol = {tol:g} "
-        "relative; loosen tol"
+
+    def error(found):
+        value, own = found[-1][0], _of_level(found)
+        return own, box(found, own, tol * value) if own <= tol * value else 0.0
+
+    refined = until_agreement(
+        levels, solve, error, met=lambda found, error: sum(error) <= tol * found[0]
     )
+    (value, _), (own, beyond) = refined.value, refined.error
+    if not refined.met:
+        raise ToleranceError(
+            f"the spectral gap {value:.10g} has an error of {own:.1e}, above tol = {tol:g} "
+            "relative; loosen tol"
+        )
+    return Estimate(value, own + beyond, "spectral elements", time.perf_counter() - began)
 
 
-def _of_polynomials(scene, degree):
-    # where the mesh need not reach out to the starting point
-    rate = float(eigenfunctions.spectrum(scene.with_start({}), degree).rates[1])
-    return rate, rate * _ROUNDING
+def _of_level(found):
+    """Error of the last of several rates, each with its rounding error, but for that of the box."""
+    changes = [
+        max(abs(fine - coarse), rounding) for (coarse, _), (fine, rounding) in pairwise(found)
+    ]
+    fall = max((b / a for a, b in pairwise(changes[-3:])), default=1.0)
+    return changes[-1] * math.sqrt(min(fall, 1.0)) + found[-1][1]
 
 
-def _on(scene, grid, accuracy):
-    """Invert -A on functions modulo constants, odd and even ones apart; rate and its error."""
+def _with_one_variable(scene):
+    """Levels, what solves on a level, and the error of the box, which is none."""
+    scene = scene.with_start({})  # where the mesh need not reach out to the starting point
+
+    def solve(degree):
+        rate = float(eigenfunctions.spectrum(scene, degree).rates[1])
+        return rate, rate * tuning.SPECTRAL_GAP.rounding
+
+    return tuning.SPECTRAL_GAP.degrees, solve, lambda found, own, allowed: 0.0
+
+
+def _with_two_variables(scene: Scene, tol: float) -> tuple[Iterable, Callable, Callable]:
+    """Levels, what solves on a level, and the error of the box."""
+    chosen = tuning.SPECTRAL_GAP
+    grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), chosen.fitted)
+    unseen = iter(range(chosen.finest + 1))  # on which the effect of the box was not measured
+
+    def solve(level):
+        return gap_on(scene, grid.at_level(level), chosen.iteration * tol)
+
+    def box(found, own, allowed):
+        """Measure what the box does on coarse levels; on finer ones while that is too much."""
+        while True:
+            level = next(unseen)
+            wider, _ = gap_on(scene, grid.at_level(level).enlarged(), chosen.iteration * tol)
+            beyond = 2 * abs(wider - found[level][0])
+            if own + beyond <= allowed or level == len(found) - 1:
+                return beyond
+
+    return range(chosen.finest + 1), solve, box
+
+
+def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
+    """Compute the slowest rate on one grid.
+
+    -A is inverted on functions modulo constants, odd and even ones apart.
+
+    Parameters
+    ----------
+    scene : Scene
+        With two state variables.
+    grid : Grid
+    accuracy : float
+        Relative, of the iteration for eigenvalues.
+
+    Returns
+    -------
+    rate, error : float
+        The error is that of the iteration and of rounding.
+    """
     _, solver = tensor_grid.solver(scene, grid)
-    slowest = []
+    wanted, slowest = tuning.SPECTRAL_GAP.wanted, []
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
         size = solver.matrix(parity).shape[0]
         inverse = spla.LinearOperator(
@@ -107,7 +139,7 @@ def _on(scene, grid, accuracy):
         )
         start = np.cos(np.arange(size))  # the same in every run
         # the slowest of those wanted is known far better than the fastest
-        largest = spla.eigs(inverse, k=_WANTED, v0=start, tol=accuracy, return_eigenvectors=False)
+        largest = spla.eigs(inverse, k=wanted, v0=start, tol=accuracy, return_eigenvectors=False)
         rates = 1 / largest[np.abs(largest) > 1e-12]
         slowest.append(min((rate.real, _moved(rates, rate)) for rate in rates))
     rate, moved = min(slowest)
@@ -116,5 +148,6 @@ def _on(scene, grid, accuracy):
 
 def _moved(rates, rate):
     """Bound how far rounding moves an eigenvalue: the farther, the closer it is to another one."""
+    chosen = tuning.SPECTRAL_GAP
     gap = np.sort(np.abs(rates - rate))[1] / abs(rate)
-    return abs(rate) * (_ROUNDING + _BACKWARD / max(gap, math.sqrt(_BACKWARD)))
+    return abs(rate) * (chosen.rounding + chosen.backward / max(gap, math.sqrt(chosen.backward)))

@@ -11,8 +11,12 @@ from nonsmooth.errors import SceneError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.paths.ensembles import paths_at
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.statistics import invariant_density as density
-from nonsmooth.statistics.invariant_density import bin_averages, closed_form, invariant_density
+from nonsmooth.statistics.invariant_density import (
+    bin_averages,
+    closed_form,
+    densities_on,
+    invariant_density,
+)
 
 OBSTACLE = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
 PLASTIC = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
@@ -24,7 +28,7 @@ def test_gibbs_density_is_the_grids():
     grid = tensor_grid.fitted(OBSTACLE, tensor_grid.depth_for(1e-3), 1)
     points = {"y": np.linspace(-3, 3, 61), "x": np.linspace(-1.2, 1.2, 61)}
     coarse, fine = (
-        density._on(OBSTACLE, grid.all_raised(by), ["y", "x"], points, None) for by in (2, 3)
+        densities_on(OBSTACLE, grid.all_raised(by), ["y", "x"], points, None) for by in (2, 3)
     )
     for name, exact in closed_form(OBSTACLE).items():
         value, error = exact(points[name])

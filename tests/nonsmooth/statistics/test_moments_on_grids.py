@@ -14,7 +14,7 @@ from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.statistics import moments_on_grids
+from nonsmooth.statistics import moments_on_grids, tuning
 
 TAU = np.array([0.0, 0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 100.0, 1000.0])
 SCENES = {
@@ -142,7 +142,7 @@ def test_projection_against_the_whole_exponential():
     scene = SCENES["elasto_plastic"]
     grid = tensor_grid.fitted(scene, 10.0, 0)
     times = np.array([0.05, 0.6, 4.0, 50.0])
-    found, inexact = moments_on_grids._on(scene, grid, times, 1e-8)
+    found, inexact = moments_on_grids.moments_on(scene, grid, times, 1e-8)
     axes, solver = tensor_grid.solver(scene, grid)
     g = solver.fold(evaluate(scene.numerical_observable(), axes))
     size = len(g)
@@ -153,7 +153,7 @@ def test_projection_against_the_whole_exponential():
     whole[size:-1, -1] = g
     for k, tau in enumerate(times):
         q, w = np.split(scipy.linalg.expm(tau * whole)[:-1, -1], 2)
-        at = moments_on_grids._at_start(scene, axes)
+        at = moments_on_grids.at_start(scene, axes)
         exact = at(solver, q[None], EVEN) - at(solver, w[None], ODD) ** 2
         assert abs(found[1, k] - exact[0]) <= 2 * inexact[1, k] + 1e-9 * (1 + tau)
 
@@ -164,11 +164,12 @@ def test_what_cannot_be_solved_is_refused(monkeypatch):
         ns.variance(ns.Scene("friction", "hamiltonian"), [1.0], method="deterministic")
     with pytest.raises(SceneError, match="n = inf"):
         ns.variance(SCENES["obstacle"].with_n(np.inf), [1.0], method="deterministic")
-    monkeypatch.setattr(moments_on_grids, "_LARGEST", 3000)
+    chosen = tuning.MOMENTS_ON_GRIDS
+    monkeypatch.setattr(tuning, "MOMENTS_ON_GRIDS", replace(chosen, largest=3000))
     with pytest.raises(ToleranceError, match="at tau = 3 has an error of"):
         ns.variance(SCENES["obstacle"], [3.0], tol=1e-7)
-    monkeypatch.setattr(moments_on_grids, "_grows", lambda matrix: True)
-    monkeypatch.setattr(moments_on_grids, "_LARGEST", 500)
+    always = replace(chosen, largest=500, growing=-np.inf)  # every mode counts as growing
+    monkeypatch.setattr(tuning, "MOMENTS_ON_GRIDS", always)
     with pytest.raises(ToleranceError, match="no stable projection"):
         ns.variance(SCENES["obstacle"], [3.0])
 
@@ -196,7 +197,9 @@ def test_a_change_of_sign_of_the_error_is_not_taken_for_convergence():
     potential = "x**2/2 + 0.3*cos(2*x)"
     scene = ns.Scene("obstacle", n=5.223, damping=1.954, potential=potential, observable="x")
     found = ns.variance(scene, [4.23], 3.6e-5, "deterministic")
-    y, x = (grid := moments_on_grids._first_grid(scene, 1e-6)).levels
-    finest = moments_on_grids._on(scene, replace(grid, levels={y: 2, x: 6}), np.array([4.23]), 1e-6)
+    y, x = (grid := moments_on_grids.first_grid(scene, 1e-6)).levels
+    finest = moments_on_grids.moments_on(
+        scene, replace(grid, levels={y: 2, x: 6}), np.array([4.23]), 1e-6
+    )
     # finer levels change less than 3e-6
     assert abs(found["v"][0] - finest[0][1, 0]) <= found["v_error"][0] + 1e-5
