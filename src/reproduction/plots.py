@@ -8,7 +8,14 @@ import matplotlib as mpl
 mpl.use("agg")
 
 import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
+from nonsmooth.scenes.models.registry import MODELS
+from nonsmooth.scenes.noises import NOISES
+from nonsmooth.scenes.scene import Scene
 from reproduction.files import whole
 from reproduction.jobs import Task, inputs, job
 
@@ -55,3 +62,48 @@ def draw(plot: Callable, task: Task) -> None:
             with whole(path) as partial:
                 figure.savefig(partial, metadata=metadata)
         plt.close(figure)
+
+
+def scene_panels(
+    height: float, xlabel: str, ylabel: str, **options
+) -> tuple[Figure, np.ndarray, Callable[[Scene], Axes]]:
+    """Make one panel for each kind of scene, models in rows and noises in columns.
+
+    Parameters
+    ----------
+    height : float
+        Of the figure, in text widths.
+    xlabel, ylabel : str
+        Of the outer panels; the second stands below the name of the model.
+    **options
+        Of `matplotlib.pyplot.subplots`.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+    axes : numpy.ndarray
+        All panels.
+    panel : callable
+        Finds the panel of a scene.
+    """
+    rows, columns = list(MODELS), list(NOISES)
+    figure, axes = plt.subplots(
+        len(rows),
+        len(columns),
+        figsize=(TEXT_WIDTH, height * TEXT_WIDTH),
+        sharey=True,
+        squeeze=False,
+        **options,
+    )
+    for row, model in zip(axes, rows, strict=True):
+        row[0].set_ylabel(f"{MODELS[model].title.lower()}\n{ylabel}")
+    for top, noise in zip(axes[0], columns, strict=True):
+        top.set_title(f"{noise} noise", fontsize=8, loc="left")
+    for bottom in axes[-1]:
+        bottom.set_xlabel(xlabel)
+    return figure, axes, lambda s: axes[rows.index(s.model), columns.index(s.noise.kind)]
+
+
+def from_zero(values: ArrayLike) -> np.ndarray:
+    """Put a zero before the values of a curve that begins at the origin."""
+    return np.concatenate([[0.0], values])

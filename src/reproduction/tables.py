@@ -11,6 +11,7 @@ import tylax
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from nonsmooth.scenes.scene import Scene
 from reproduction.files import whole
 from reproduction.jobs import Task, inputs, job
 
@@ -84,6 +85,16 @@ def penalization(n: float) -> str:
 def symbol(name: str) -> str:
     """Spell a variable, or an observable that is one, as LaTeX mathematics."""
     return f"${name}$" if len(name) == 1 else rf"$\{name}$"
+
+
+def described(scene: Scene) -> dict[str, str]:
+    """Spell a scene in four cells: its model, noise, state and observable."""
+    return {
+        "model": scene.model.replace("_", "-"),
+        "noise": scene.noise.kind,
+        "state": ", ".join(map(symbol, scene.state)),
+        "$g$": symbol(scene.observable),
+    }
 
 
 def sorted_by(name: str, datasets: Iterable[xr.Dataset]) -> list[xr.Dataset]:

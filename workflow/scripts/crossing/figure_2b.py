@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reproduction.plots import BLACK, LOOKS, ORANGE, TEXT_WIDTH, draw
+from reproduction.plots import BLACK, LOOKS, ORANGE, TEXT_WIDTH, draw, from_zero
 from reproduction.tables import sorted_by
 
 
@@ -20,12 +20,12 @@ def crossing(monte_carlo, exact, asymptotic, check, contained):
     figure, (top, middle, bottom) = plt.subplots(
         3, 1, figsize=(0.75 * TEXT_WIDTH, 5.2), sharex=True, height_ratios=[2.2, 1, 1]
     )
-    limit = _from_zero(asymptotic["probability"])
+    limit = from_zero(asymptotic["probability"])
     runs = zip(sorted_by("p", monte_carlo), sorted_by("p", exact), strict=True)
     for k, (run, curve) in enumerate(runs):
         color, dashes = LOOKS[k % len(LOOKS)]
-        horizon = _from_zero(run["horizon"])
-        lower, upper = _from_zero(run["lower"]), _from_zero(run["upper"])
+        horizon = from_zero(run["horizon"])
+        lower, upper = from_zero(run["lower"]), from_zero(run["upper"])
         solved, probability = curve["horizon"].values, curve["probability"].values
         late = slice(-len(solved), None)  # the exact curves begin later
         for axis, shift in ((top, np.zeros_like(limit)), (middle, limit)):
@@ -51,10 +51,6 @@ def crossing(monte_carlo, exact, asymptotic, check, contained):
     middle.set(ylabel=r"$W - W_\star$")
     bottom.set(xlabel="$T$", ylabel="bands $- W$", xlim=(0, horizon[-1]))
     return figure
-
-
-def _from_zero(values):
-    return np.concatenate([[0.0], values])
 
 
 if __name__ == "__main__":

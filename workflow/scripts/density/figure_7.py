@@ -1,11 +1,7 @@
 """Figure 7: invariant densities of every scene, by solvers and by simulation."""
 
-import matplotlib.pyplot as plt
-
-from nonsmooth.scenes.models.registry import MODELS
-from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
-from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw
+from reproduction.plots import BLUE, ORANGE, draw, scene_panels
 
 LOOKS = {
     "y": (BLUE, "o", "-", "velocity $y$"),
@@ -28,14 +24,11 @@ def invariant(densities, scenes, names):
     -------
     matplotlib.figure.Figure
     """
-    rows, columns = list(MODELS), list(NOISES)
-    figure, axes = plt.subplots(
-        len(rows), len(columns), figsize=(TEXT_WIDTH, TEXT_WIDTH), sharey=True, squeeze=False
-    )
+    figure, axes, panel_of = scene_panels(1, "$y$, $x$", "density")
     handles = {}
     for name, data in zip(names, densities, strict=True):
         scene = Scene(**scenes[name]["scene"])
-        panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
+        panel = panel_of(scene)
         for variable in (v for v in LOOKS if v in data.coords):
             color, marker, dashes, text = LOOKS[variable]
             z, line = data[variable].values, data[f"density_{variable}"].values
@@ -56,12 +49,6 @@ def invariant(densities, scenes, names):
                 elinewidth=0.6,
             )
             handles |= {f"{text}, solved": solved, f"{text}, simulated": sampled}
-    for row, model in zip(axes, rows, strict=True):
-        row[0].set_ylabel(f"{MODELS[model].title.lower()}\ndensity")
-    for panel, noise in zip(axes[0], columns, strict=True):
-        panel.set_title(f"{noise} noise", fontsize=8, loc="left")
-    for panel in axes[-1]:
-        panel.set_xlabel("$y$, $x$")
     axes[0, 0].set(yscale="log", ylim=(2e-4, 60))
     figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=4)
     return figure

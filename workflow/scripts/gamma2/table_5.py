@@ -4,7 +4,7 @@ import pandas as pd
 
 from nonsmooth.scenes.scene import Scene
 from reproduction.gamma2 import compared
-from reproduction.tables import symbol, typeset
+from reproduction.tables import described, typeset
 
 
 def two_methods(solved, sampled, names, scenes):
@@ -32,15 +32,7 @@ def two_methods(solved, sampled, names, scenes):
         scene = Scene(**scenes[name]["scene"])
         row, values = compared(name, scene, exact, sample)
         plain.append(row)
-        cells.append(
-            {
-                "model": scene.model.replace("_", "-"),
-                "noise": scene.noise.kind,
-                "state": ", ".join(map(symbol, scene.state)),
-                "$g$": symbol(scene.observable),
-            }
-            | values
-        )
+        cells.append(described(scene) | values)
     return pd.DataFrame(plain), pd.DataFrame(cells)
 
 

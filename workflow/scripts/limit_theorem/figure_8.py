@@ -1,12 +1,9 @@
 """Figure 8: distances of every scene to the limits of the functional central limit theorem."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 
-from nonsmooth.scenes.models.registry import MODELS
-from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
-from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw
+from reproduction.plots import BLUE, ORANGE, draw, scene_panels
 
 # the factor of p moves the points apart, so that their error bars do not cover each other
 LOOKS = {
@@ -29,20 +26,12 @@ def distances(check, scenes):
     -------
     matplotlib.figure.Figure
     """
-    rows, columns = list(MODELS), list(NOISES)
-    figure, axes = plt.subplots(
-        len(rows),
-        len(columns),
-        figsize=(TEXT_WIDTH, TEXT_WIDTH),
-        sharex=True,
-        sharey=True,
-        squeeze=False,
-    )
+    figure, axes, panel_of = scene_panels(1, "$p$", "distance", sharex=True)
     p, floor = check["p"].values, float(check["floor"])
     lowest = floor / 5
     for name in check["scene"].values:
         scene, run = Scene(**scenes[name]["scene"]), check.sel(scene=name)
-        panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
+        panel = panel_of(scene)
         for quantity, (color, marker, dashes, factor, text) in LOOKS.items():
             distance, error = run[quantity].values, run[f"{quantity}_error"].values
             panel.errorbar(
@@ -69,12 +58,6 @@ def distances(check, scenes):
             label=r"$\propto p^{-1/2}$",
         )
     legend = panel.get_legend_handles_labels()
-    for row, model in zip(axes, rows, strict=True):
-        row[0].set_ylabel(f"{MODELS[model].title.lower()}\ndistance")
-    for panel, noise in zip(axes[0], columns, strict=True):
-        panel.set_title(f"{noise} noise", fontsize=8, loc="left")
-    for panel in axes[-1]:
-        panel.set_xlabel("$p$")
     axes[0, 0].set(xscale="log", yscale="log", ylim=(lowest, 1.5))
     figure.legend(*legend, loc="outside upper center", ncols=4)
     return figure

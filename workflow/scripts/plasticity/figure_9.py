@@ -1,10 +1,9 @@
 """Figure 9: probability of exceeding a permanent deformation, by formulas and Monte Carlo."""
 
 import matplotlib.pyplot as plt
-import numpy as np
 
 from reproduction.plasticity import relaxation_time
-from reproduction.plots import BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
+from reproduction.plots import BLUE, GREEN, ORANGE, TEXT_WIDTH, draw, from_zero
 
 COLORS = [GREEN, BLUE, ORANGE]
 # the plain and the corrected formula
@@ -33,15 +32,15 @@ def exceedance(monte_carlo, check, oscillator):
     figure, (top, bottom) = plt.subplots(
         2, 1, figsize=(0.75 * TEXT_WIDTH, 4.6), sharex=True, height_ratios=[2, 1]
     )
-    duration = _from_zero(check["duration"])
+    duration = from_zero(check["duration"])
     for run, color in zip(monte_carlo, COLORS, strict=False):
         limit = float(run["limit"])
         formulas = check.sel(limit=limit)
-        lower, upper = _from_zero(run["lower"]), _from_zero(run["upper"])
+        lower, upper = from_zero(run["lower"]), from_zero(run["upper"])
         options = {"color": color, "alpha": 0.45, "linewidth": 0}
         top.fill_between(duration, lower, upper, label=f"{limit:g}, Monte Carlo", **options)
         for text, (probability, difference, dashes) in LOOKS.items():
-            value = _from_zero(formulas[probability])
+            value = from_zero(formulas[probability])
             line = {"color": color, "linestyle": dashes}
             top.plot(duration, value, label=f"{limit:g}, {text}", **line)
             bottom.fill_between(duration, value - upper, value - lower, **options)
@@ -56,10 +55,6 @@ def exceedance(monte_carlo, check, oscillator):
         loc="outside upper center", ncols=len(monte_carlo), title="limit in yield displacements"
     )
     return figure
-
-
-def _from_zero(values):
-    return np.concatenate([[0.0], values])
 
 
 if __name__ == "__main__":

@@ -2,12 +2,8 @@
 
 from itertools import cycle
 
-import matplotlib.pyplot as plt
-
-from nonsmooth.scenes.models.registry import MODELS
-from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
-from reproduction.plots import LOOKS, ORANGE, TEXT_WIDTH, draw
+from reproduction.plots import LOOKS, ORANGE, draw, scene_panels
 
 
 def sweep(crossing, limit, scenes, p):
@@ -22,18 +18,10 @@ def sweep(crossing, limit, scenes, p):
     -------
     matplotlib.figure.Figure
     """
-    rows, columns = list(MODELS), list(NOISES)
-    figure, axes = plt.subplots(
-        len(rows),
-        len(columns),
-        figsize=(TEXT_WIDTH, 1.05 * TEXT_WIDTH),
-        sharex=True,
-        sharey=True,
-        squeeze=False,
-    )
+    figure, axes, panel_of = scene_panels(1.05, "$T$", r"$W(\sqrt{p}\,b, pT)$", sharex=True)
     for k, (name, parameters) in enumerate(scenes.items()):
         scene = Scene(**parameters["scene"])
-        panel = axes[rows.index(scene.model), columns.index(scene.noise.kind)]
+        panel = panel_of(scene)
         runs = crossing[k * len(p) : (k + 1) * len(p)]
         for scale, run, (color, dashes) in zip(p, runs, cycle(LOOKS), strict=False):
             horizon = run["horizon"].values
@@ -55,12 +43,6 @@ def sweep(crossing, limit, scenes, p):
             zorder=1,
         )
         panel.set_title(f"$b = {parameters['threshold']:g}$", fontsize=8, loc="right")
-    for row, model in zip(axes, rows, strict=True):
-        row[0].set_ylabel(f"{MODELS[model].title.lower()}\n" + r"$W(\sqrt{p}\,b, pT)$")
-    for panel, noise in zip(axes[0], columns, strict=True):
-        panel.set_title(f"{noise} noise", fontsize=8, loc="left")
-    for panel in axes[-1]:
-        panel.set_xlabel("$T$")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
     axes[0, 0].set(xlim=(0, float(limit["horizon"][-1])), ylim=(0, None))
     return figure

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.tables import typeset
+from reproduction.tables import described, typeset
 
 
 def sweep(variance, crossing, limit, scenes, p):
@@ -41,21 +41,12 @@ def sweep(variance, crossing, limit, scenes, p):
         row["W_star_error"] = float(star["probability_error"])
         plain.append(row)
         cells.append(
-            {
-                "model": scene.model.replace("_", "-"),
-                "noise": scene.noise.kind,
-                "state": ", ".join(f"${_symbol(s)}$" for s in scene.state),
-                "$g$": f"${_symbol(scene.observable)}$",
-                "$b$": f"${parameters['threshold']:g}$",
-            }
+            described(scene)
+            | {"$b$": f"${parameters['threshold']:g}$"}
             | {f"$p = {scale:g}$": f"{row[f'W_{scale:g}']:.3f}" for scale in p}
             | {r"$W_\star$": f"{row['W_star']:.3f}"}
         )
     return pd.DataFrame(plain), pd.DataFrame(cells)
-
-
-def _symbol(name):
-    return name if len(name) == 1 else rf"\{name}"
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.tables import symbol, typeset
+from reproduction.tables import described, typeset
 
 
 def ergodic(ergodicity, scenes):
@@ -25,11 +25,8 @@ def ergodic(ergodicity, scenes):
     for row in plain.itertuples():
         scene = Scene(**scenes[row.scene])
         cells.append(
-            {
-                "model": scene.model.replace("_", "-"),
-                "noise": scene.noise.kind,
-                "state": ", ".join(map(symbol, scene.state)),
-                "$g$": symbol(scene.observable),
+            described(scene)
+            | {
                 "spectral gap": f"${_with_error(row.gap, row.gap_error)}$",
                 "decay on a box": f"${_with_error(row.rate, row.rate_error)}$",
                 "at infinity": f"${_with_error(row.far, row.far_error)}$",
