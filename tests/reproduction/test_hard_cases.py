@@ -9,7 +9,8 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.errors import AssumptionWarning, ToleranceError
 from nonsmooth.paths.moments import step_bias
-from reproduction.hard_cases import CASES, MET, REFUSED, WARNED, WRONG, Case, Result, examine
+from reproduction.hard_cases.cases import CASES
+from reproduction.hard_cases.record import MET, REFUSED, WARNED, WRONG, Case, Result, examine
 
 PATHS = 1_000
 # solvers that take seconds; the target hard_cases has them
