@@ -1,0 +1,426 @@
+"""The numbers that the text of the paper quotes, spelt as they stand there.
+
+`paper_values` collects them; each other function is one section of the paper. All numbers are
+strings, of which those in scientific notation and the formulas are Typst mathematics.
+"""
+
+import json
+from collections.abc import Mapping
+
+import numpy as np
+import tylax
+import xarray as xr
+from sympy import latex
+
+from nonsmooth.scenes.formulas import parse
+from nonsmooth.scenes.symbols import eta, x
+from reproduction.plasticity import relaxation_time
+from reproduction.printed import printed_values
+from reproduction.tables import penalization, scientific
+
+SIGNIFICANT = 3.0  # standard errors from which on the text calls the formula too low
+
+CONSTANTS = ("diffusion", "kappa", "dispersion", "corner", "stretch", "start")
+
+
+def paper_values(artifacts: Mapping, settings: Mapping) -> dict:
+    """Collect the numbers of all sections.
+
+    Parameters
+    ----------
+    artifacts : mapping
+        Datasets by the names of the rule's inputs; `convergence` is a list with one for each n.
+    settings : mapping
+        Sections of the configuration by the names of the rule's parameters.
+
+    Returns
+    -------
+    dict
+        Section -> dict, nested, of strings.
+    """
+    a, s = artifacts, settings
+    return {
+        "variance": variance(a["spectral"], a["monte_carlo"], a["agreement"], s["variance"]),
+        "convergence": convergence(a["convergence"], s["horizon"], s["scheme"]),
+        "crossing": crossing(a["crossing"], s["sweep"]),
+        "finite_p": finite_p(a["contained"], a["formulas"], s["finite_p"]),
+        "trajectories": trajectories(s["trajectories"]),
+        "sweep": every_scene(a["limit"], s["scenes"]),
+        "density": density(s["density"]),
+        "theorems": theorems(a["drift_condition"], s["theorems"]),
+        "ergodicity": ergodicity(
+            a["ergodicity"], s["theorems"]["ergodicity"], s["scenes"]["scenes"]
+        ),
+        "limit_theorem": limit_theorem(a["theorem"], s["limit_theorem"]),
+        "rates": rates(a["rates"], s["limits"]),
+        "plasticity": plasticity(a["deformation"], a["deformation_variance"], s["plasticity"]),
+        "errata": errata(a["errata"]),
+        "seed": str(s["seed"]),
+    }
+
+
+def variance(
+    spectral: xr.Dataset, monte_carlo: xr.Dataset, agreement: xr.Dataset, section: Mapping
+) -> dict:
+    """Return the errors of the three methods of figure 2a, and how far they agree."""
+    scheme = section["finite_difference"]
+    deterministic_error = spectral["v_error"] / spectral["time"]
+    sampled = {name: (monte_carlo[name] / monte_carlo["time"])[-1] for name in ("v_error", "bias")}
+    return {
+        "n": _short(section["scene"]["n"]),
+        "gamma2": f"{float(spectral['gamma2']):.15f}",
+        "gamma2_error": _bound(spectral["gamma2_error"]),
+        "rounded": f"{float(spectral['gamma2']):.4f}",
+        "printed": str(printed_values("fig:fpn-cmp-PDE-MC")["asymptotic_value"]),
+        "horizon": _short(spectral["time"].values[-1]),
+        "deterministic_error": _bound(deterministic_error.max()),
+        "nodes": str(scheme["nodes"]),
+        "time_step": _short(scheme["time_step"]),
+        "half_width": _short(scheme["half_width"]),
+        "paths": _count(monte_carlo["paths"]),
+        "step": _short(section["monte_carlo"]["step"]),
+        "standard_error": _power(sampled["v_error"]),
+        "bias": _power(sampled["bias"]),
+        "finite_difference_agreement": f"{float(agreement['finite_difference'].max()):.2f}",
+        "monte_carlo_agreement": f"{float(agreement['monte_carlo'].max()):.2f}",
+        "threshold": f"{float(agreement['threshold']):.2f}",
+        "false_alarm": _power(agreement["false_alarm"]),
+    }
+
+
+def convergence(solutions: list[xr.Dataset], horizon: float, scheme: Mapping) -> dict:
+    """Return the largest errors of table 4 over n, and the sizes of the paper's scheme."""
+    return {
+        "horizon": _short(horizon),
+        "v_over_time_error": _bound(max(run["v_over_time_error"] for run in solutions)),
+        "gamma2_error": _bound(max(run["gamma2_error"] for run in solutions)),
+        "half_width": _short(scheme["half_width"]),
+        "nodes": _short(scheme["nodes"]),
+        "time_step": _short(scheme["time_step"]),
+    }
+
+
+def crossing(check: xr.Dataset, section: Mapping) -> dict:
+    """Return the sizes of figure 2b and its distance to the limit at the largest p."""
+    largest = check.isel(p=-1)
+    return {
+        "n": _short(section["scene"]["n"]),
+        "threshold": _short(section["threshold"]),
+        "horizon": _short(section["horizon"]),
+        "paths": _count(section["paths"]),
+        "step": _short(section["step"]),
+        "p": _list(section["p"]),
+        "largest_p": _short(largest["p"]),
+        "distance": f"{float(largest['distance']):.4f}",
+        "standard_error": f"{float(largest['standard_error']):.4f}",
+        "ratio": f"{float(largest['distance'] / largest['standard_error']):.0f}",
+    }
+
+
+def finite_p(contained: xr.Dataset, formulas: xr.Dataset, section: Mapping) -> dict:
+    """Return constants and errors of the corrected formulas, and how often bands hold curves."""
+    constants_error = max(float(formulas[f"{name}_error"]) for name in CONSTANTS)
+    percent = {
+        name: f"{100 * float(contained[name]):.1f}"
+        for name in ("share", "expected", "spread", "least")
+    }
+    return (
+        {name: f"{float(formulas[name]):.8f}" for name in CONSTANTS}
+        | {
+            "constants_error": _bound(constants_error),
+            "horizons": _list(section["horizons"]),
+            "tabulated": _short(section["tabulated"]),
+            "tolerance": _power(section["tolerance"]),
+            "first_time": _short(section["first_time"]),
+            "fit_from": _short(section["fit_from"]),
+            "slopes": [f"{slope:.2f}" for slope in formulas["slope"].values],
+            "rarely": _power(contained["rarely"]),
+            "outside": _power(contained["outside"]),
+            "standard_errors": f"{float(contained['standard_errors'].max()):.1f}",
+        }
+        | percent
+        | _formula_errors(formulas)
+    )
+
+
+def _formula_errors(formulas):
+    """Largest errors for each p, where the exact values resolve those of order 2.
+
+    Also the p from which on order 2 is better than order 1.
+    """
+    p, distance = formulas["p"].values, formulas["distance"]
+    first, second = (distance.sel(formula=name).values for name in ("order 1", "order 2"))
+    resolved = formulas["resolved"].any("horizon")
+    known = resolved.sel(formula="order 2").values
+    better = p[p > max(p[known & (second >= first)], default=0.0)]
+    return {
+        "errors": [
+            {"p": _short(scale)}
+            | {
+                str(name): _power(distance.sel(formula=name)[k])
+                if resolved.sel(formula=name)[k]
+                else None
+                for name in distance["formula"].values
+            }
+            for k, scale in enumerate(p)
+            if known[k]
+        ],
+        "order_2_better": _short(better[0]) if better.size else "oo",
+    }
+
+
+def trajectories(section: Mapping) -> dict:
+    """Return what figures 3 to 5 assume."""
+    return {
+        "step": _short(section["step"]),
+        "models": {
+            _words(model): {
+                "potential": parameters["potential"],
+                "damping": _short(parameters["damping"]),
+            }
+            for model, parameters in section["models"].items()
+        },
+    }
+
+
+def every_scene(limit: xr.Dataset, section: Mapping) -> dict:
+    """Return the sizes of table 6 and figure 6."""
+    times = section["variance"]["times"]
+    return {
+        "paths": _count(section["paths"]),
+        "step": _short(section["step"]),
+        "settled": _short(times[0]),
+        "end": _short(times[-1]),
+        "horizon": _short(section["horizon"]),
+        "n": ", ".join(
+            sorted({_short(entry["scene"]["n"]) for entry in section["scenes"].values()})
+        ),
+        "allowed": _short(limit["allowed"]),
+        "standard_error": f"{0.5 / section['paths'] ** 0.5 + 5e-5:.4f}",  # rounded up
+    }
+
+
+def density(section: Mapping) -> dict:
+    """Return the sizes of figure 7."""
+    return {
+        "paths": _count(section["paths"]),
+        "time": _short(section["time"]),
+        "step": _short(section["step"]),
+        "tolerances": [_power(tolerance) for tolerance in section["tolerances"]],
+    }
+
+
+def theorems(drift_condition: xr.Dataset, section: Mapping) -> dict:
+    """Return what table 7 covers, and its smallest margins."""
+    return {
+        "cases": str(drift_condition.sizes["case"]),
+        "points": _count(section["points"]),
+        "reach": _power(section["reach"]),
+        "damping": _list(section["damping"]),
+        "n": ", ".join(f"{n:,}" for n in section["n"]),
+        "potentials": [_formula(U, x) for U in section["potentials"]["obstacle"]],
+        "langevin": [_formula(v, eta) for v in section["langevin"]],
+        "drift": f"{float(drift_condition['drift'].min()):.2f}",
+        "printed": f"{-float(drift_condition['forcing_printed'].min()):.2f}",
+        "rounding": _bound(drift_condition["drift_error"].max()),
+    }
+
+
+def ergodicity(found: xr.Dataset, section: Mapping, scenes: Mapping) -> dict:
+    """Return how well rates agree, and the scenes in which infinity is slower than the gap."""
+    deviation = np.abs(found["rate"] - found["gap"]) / (found["rate_error"] + found["gap_error"])
+    slower = found["far"] + found["far_error"] < found["gap"] - found["gap_error"]
+    return {
+        "step": _short(section["step"]),
+        "enlargement": _short(section["enlargement"]),
+        "deviation": f"{float(deviation.max()):.2f}",
+        "slower": [
+            {
+                "model": _words(scenes[name]["scene"]["model"]),
+                "noise": scenes[name]["scene"]["noise"],
+                "far": f"{float(found['far'].sel(scene=name)):.2f}",
+                "gap": f"{float(found['gap'].sel(scene=name)):.2f}",
+            }
+            for name in found["scene"].values[slower.values]
+        ],
+    }
+
+
+def limit_theorem(theorem: xr.Dataset, section: Mapping) -> dict:
+    """Return extreme distances of all scenes at the largest p, and how fast the maximum's fall."""
+    last = theorem.isel(p=-1)
+    p = theorem["p"].values[-2:]
+    pair = theorem["maximum"].values[:, -2:]
+    exponents = np.log(pair[:, 1] / pair[:, 0]) / np.log(p[1] / p[0])
+    return {
+        "paths": _count(section["paths"]),
+        "p": _list(section["p"]),
+        "largest_p": _short(p[1]),
+        "before": _short(p[0]),
+        "floor": f"{float(theorem['floor']):.4f}",
+        "false_alarm": _power(theorem["false_alarm"]),
+        "final_largest": f"{float(last['final'].max()):.4f}",
+        "maximum_smallest": f"{float(last['maximum'].min()):.3f}",
+        "maximum_largest": f"{float(last['maximum'].max()):.3f}",
+        "exponent_smallest": f"{exponents.max():.2f}",
+        "exponent_largest": f"{exponents.min():.2f}",
+    }
+
+
+def rates(found: xr.Dataset, section: Mapping) -> dict:
+    """Return the exponents of n with their errors, by scene."""
+
+    def exponent(kind, scene):
+        values = (found[f"{kind}_exponent{suffix}"].sel(scene=scene) for suffix in ("", "_error"))
+        return " plus.minus ".join(f"{float(value):.2f}" for value in values)
+
+    return {
+        "paths": _count(section["paths"]),
+        "horizon": _short(section["horizon"]),
+        "weak_paths": _count(section["weak"]["paths"]),
+        "weak_horizon": _short(section["weak"]["horizon"]),
+        "exponents": {
+            str(scene): {kind: exponent(kind, scene) for kind in ("pathwise", "weak")}
+            for scene in found["scene"].values
+        },
+    }
+
+
+def plasticity(deformation: xr.Dataset, constants: xr.Dataset, section: Mapping) -> dict:
+    """Return the example's parameters, the differences for each limit, and code that computes it.
+
+    Parameters
+    ----------
+    deformation : xarray.Dataset
+        Both formulas against Monte Carlo, by limit and duration.
+    constants : xarray.Dataset
+        gamma^2 and kappa.
+    section : mapping
+        Of the configuration.
+
+    Returns
+    -------
+    dict
+    """
+    oscillator, ground = section["oscillator"], section["ground"]
+    gamma2 = float(constants["gamma2"])
+    runs = [run.squeeze("limit") for _, run in deformation.groupby("limit")]
+    relaxation = relaxation_time(oscillator)
+    return {
+        "ground": {key: _short(value) for key, value in ground.items()},
+        "frequency": _short(np.sqrt(ground["stiffness"])),
+        "damping_ratio": f"{ground['damping'] / np.sqrt(ground['stiffness']) / 2:.2g}",
+        "n": penalization(oscillator["n"]).strip("$").replace(r"\infty", "oo"),
+        "damping": _short(oscillator["damping"]),
+        "potential": oscillator["potential"],
+        "paths": _count(section["paths"]),
+        "duration": _short(section["duration"]),
+        "periods": f"{section['duration'] / (2 * np.pi):.0f}",
+        "relaxation": _short(relaxation),
+        "relaxations": _short(section["duration"] / relaxation),
+        "gamma2": f"{gamma2:.4f}",
+        "gamma2_error": _bound(constants["gamma2_error"]),
+        "kappa": f"{float(constants['kappa']):.2f}",
+        "kappa_error": f"{float(constants['kappa_error']):.2f}",
+        "limits": [_differences(run, gamma2) for run in runs],
+        "low": f"{max(map(_largest_underestimated, runs)):.2g}",
+        "significant": _short(SIGNIFICANT),
+        "code": _example(section),
+    }
+
+
+def _differences(run, gamma2):
+    """Probabilities of one limit at the end, and where the formulas are off most."""
+    duration, difference = run["duration"].values, run["difference"].values
+    limit, formula, sampled = float(run["limit"]), run["probability"].values, _sampled(run)
+    corrected = run["corrected_difference"].values
+    largest, least = np.argmax(np.abs(difference)), np.argmin(difference)
+    ratio = abs(difference[largest]) / run["difference_error"].values[largest]
+    return {
+        "limit": _short(limit),
+        "scaled": f"{limit / np.sqrt(gamma2 * duration[-1]):.2f}",
+        "formula": f"{formula[-1]:.3f}",
+        "corrected": f"{float(run['corrected'][-1]):.3f}",
+        "corrected_largest": f"{corrected[np.argmax(np.abs(corrected))]:+.3f}",
+        "sampled": f"{sampled[-1]:.3f}",
+        "largest": f"{difference[largest]:+.3f}",
+        "largest_ratio": f"{ratio:.0f}",
+        "largest_at": _short(duration[largest]),
+        "low_formula": f"{formula[least]:.4f}",
+        "low_sampled": f"{sampled[least]:.4f}",
+        "low_at": _short(duration[least]),
+    }
+
+
+def _sampled(run):
+    return run["probability"].values - run["difference"].values
+
+
+def _largest_underestimated(run):
+    """Largest probability that the plain formula gives significantly too low."""
+    too_low = run["difference"].values < -SIGNIFICANT * run["difference_error"].values
+    return max(_sampled(run)[too_low], default=0.0)
+
+
+def _example(section):
+    """Python that computes the example's last probability of the middle limit."""
+    ground, oscillator = (
+        ", ".join(f"{key}={_literal(value)}" for key, value in section[name].items())
+        for name in ("ground", "oscillator")
+    )
+    limit = sorted(section["limits"])[len(section["limits"]) // 2]
+    return "\n".join(
+        [
+            "import nonsmooth as ns",
+            "",
+            f"ground = ns.KanaiTajimi({ground})",
+            'scene = ns.Scene("elasto_plastic", ground, observable="plastic_strain_rate",',
+            f"                 {oscillator})",
+            f"found = ns.asymptotic_variance(scene, tol={section['tolerance']:g}, "
+            'method="monte_carlo")',
+            "kappa = ns.extrapolation_length(scene)",
+            f"limit, duration = {limit:g}, {section['duration']:g}",
+            "ns.brownian_crossing((limit + kappa.value) / found.value**0.5, duration)",
+        ]
+    )
+
+
+def _literal(value):
+    return 'float("inf")' if value == float("inf") else json.dumps(value)
+
+
+def errata(table: xr.Dataset) -> dict:
+    """Return how many entries the errata have, and how many values."""
+    entries = {str(entry).strip("abcd") for entry in table["entry"].values}
+    return {"rows": str(table.sizes["entry"]), "entries": str(len(entries))}
+
+
+# How numbers are spelt
+
+
+def _short(value):
+    return f"{float(value):g}"
+
+
+def _count(value):
+    return f"{int(value):,}"
+
+
+def _list(values):
+    return ", ".join(map(_short, values))
+
+
+def _power(value):
+    return tylax.latex_to_typst(scientific(value).strip("$"))
+
+
+def _bound(value):
+    return tylax.latex_to_typst(scientific(value, bound=True).strip("$"))
+
+
+def _formula(text, variable):
+    return tylax.latex_to_typst(latex(parse(text, (variable,))))
+
+
+def _words(name):
+    return name.replace("_", "-")
