@@ -155,12 +155,12 @@ def _formula_errors(formulas):
     better = p[p > max(p[known & (second >= first)], default=0.0)]
     return {
         "errors": [
-            {"p": _short(scale)}
-            | {
-                str(name): _power(distance.sel(formula=name)[k])
-                if resolved.sel(formula=name)[k]
-                else None
-                for name in distance["formula"].values
+            {
+                "p": _short(scale),
+                "values": [
+                    _power(distance.sel(formula=name)[k]) if resolved.sel(formula=name)[k] else None
+                    for name in distance["formula"].values
+                ],
             }
             for k, scale in enumerate(p)
             if known[k]
