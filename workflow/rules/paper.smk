@@ -66,6 +66,7 @@ rule paper:
         tables=rules.tables.input,
         values=rules.values.output[0],
         template="paper/paper.typ",
+        printed="paper/printed.yaml",
         recorded=["docs/speed_pde.pdf", "docs/speed_crossing.pdf"],
     output:
         report(PAPER, caption="../report/paper.rst", category="Paper"),
