@@ -32,8 +32,9 @@ from nonsmooth.kinetic import tail_equation
 from nonsmooth.line import eigenfunctions, quadrature
 from nonsmooth.paths.ensembles import coupled, gram, integrals_at
 from nonsmooth.paths.moments import moments
-from nonsmooth.paths.resolution import SIGMAS, coarse_step
+from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.statistics import gamma2_on_grids, moments_on_grids
 from nonsmooth.statistics.sampled_gamma2 import slopes
 from nonsmooth.statistics.spectral_gap import gap_on as gap_on_grid
@@ -357,7 +358,7 @@ def plain_growth(request):
         step = coarse_step(scene) * share
         sampling = Sampling(step, paths, (seed, "plain"), threads=1)
         found = slopes(integrals_at(scene, GROWTH_TIMES, sampling), GROWTH_TIMES)
-        small = SIGMAS * found.gamma2_error <= tol * found.gamma2
+        small = MONTE_CARLO.sigmas * found.gamma2_error <= tol * found.gamma2
         return found.gamma2 if small else None, SAMPLED
 
     if tol >= least_sampled(request):
@@ -374,7 +375,7 @@ def plain_variance(request):
         paths = plain_paths(size * math.sqrt(SPREAD["variance"]), tol)
         step = min(coarse_step(scene), times[-1] / 32) * share
         found = moments(gram(scene, times, Sampling(step, paths, (seed, "plain"), threads=1)))
-        small = np.all(SIGMAS * found["variance_error"] <= tol * times)
+        small = np.all(MONTE_CARLO.sigmas * found["variance_error"] <= tol * times)
         return found["variance"] if small else None, SAMPLED
 
     if tol >= least_sampled(request):
@@ -401,7 +402,7 @@ def plain_crossing(request):
 
 def plain_paths(deviation, tol):
     """Paths whose three standard errors are the tolerance."""
-    return max(100, math.ceil((SIGMAS * deviation / tol) ** 2))
+    return max(100, math.ceil((MONTE_CARLO.sigmas * deviation / tol) ** 2))
 
 
 def asymptotic(request):

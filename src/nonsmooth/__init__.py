@@ -22,6 +22,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "scenes.scene": ["Scene"],
         "statistics.spectral_gap": ["spectral_gap"],
         "paths.simulation": ["simulate"],
-        "statistics.variance": ["asymptotic_variance", "variance"],
+        "statistics.asymptotic_variance": ["asymptotic_variance"],
+        "statistics.variance": ["variance"],
     },
 )

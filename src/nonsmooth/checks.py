@@ -3,11 +3,12 @@
 from numbers import Integral
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nonsmooth.errors import SceneError
 
 
-def require_increasing(name, values):
+def require_increasing(name: str, values: ArrayLike) -> None:
     """Refuse what is not a list of increasing positive finite numbers."""
     values = np.asarray(values, dtype=float)
     if values.ndim != 1 or not (
@@ -16,7 +17,7 @@ def require_increasing(name, values):
         raise SceneError(f"the {name} must be positive and increase; sort them")
 
 
-def require_count(name, value):
+def require_count(name: str, value: object) -> None:
     """Refuse what is not a whole positive number."""
     if not (isinstance(value, Integral) and value > 0):
         raise SceneError(
@@ -24,7 +25,7 @@ def require_count(name, value):
         )
 
 
-def require_positive(name, value):
+def require_positive(name: str, value: float) -> None:
     """Refuse what is not a positive finite number."""
     if not 0 < value < np.inf:
         raise SceneError(f"the simulation needs {name} > 0, got {value}; choose a positive number")

@@ -11,11 +11,11 @@ from scipy import stats
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.line.dry_friction import friction_variance
-from nonsmooth.paths import schemes
 from nonsmooth.paths.ensembles import integrals_at, parallel
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
@@ -57,7 +57,7 @@ def largest_distances(
     row = STATE[[s.name for s in STATE_VARIABLES].index(variable)]
     steps = math.ceil(horizon / sampling.step)
     pair = [
-        (one, schemes.coefficients(one, sampling.scheme, horizon / steps, "float64"))
+        (one, registry.coefficients(one, sampling.scheme, horizon / steps, "float64"))
         for one in (scene, scene.with_n(math.inf))
     ]
 

@@ -32,7 +32,7 @@ from nonsmooth.boundary_layer.symmetric_line import expansion
 from nonsmooth.crossing.expansion import Constants, Formula
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.paths.kernels.random_numbers import labelled
-from nonsmooth.statistics.variance import limit_variance
+from nonsmooth.statistics.asymptotic_variance import limit_variance
 
 # a and c for every k, as measured on a hundred one-dimensional scenes and intervals, with a margin
 _DOUBT = {1: (1.0, 0.0), 2: (0.3, 2.0), 3: (0.6, 2.0)}

@@ -11,11 +11,11 @@ import xarray as xr
 from nonsmooth.checks import require_increasing, require_positive
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
-from nonsmooth.crossing.counting import least_steps, sampled_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
+from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.scenes.thresholds import bounds
-from nonsmooth.statistics.variance import limit_variance, stationary_mean
+from nonsmooth.statistics.asymptotic_variance import limit_variance, stationary_mean
 
 # Seconds on one core, as measured: of a coarse step of a path, with all that comes on top, and of
 # the deterministic method for one and two variables for times that grow by the factor _WINDOW

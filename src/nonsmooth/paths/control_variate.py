@@ -14,12 +14,11 @@ import scipy
 from numpy.polynomial import chebyshev
 
 from nonsmooth.line import eigenfunctions, potential
+from nonsmooth.paths import tuning
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 
 DEGREE = 12  # of the polynomial that kernels evaluate; what it misses is below 5 % of u'
-_POINTS = 4097
-_NEGLIGIBLE = 20.0  # the table ends where the density has fallen by exp(-20) = 2e-9
 
 
 @dataclass(frozen=True)
@@ -81,11 +80,11 @@ def poisson_slope(scene):
         return None
     depth = potential.depth(scene)
     reach = 1.0
-    while depth(reach / 1.1) > _NEGLIGIBLE:
+    while depth(reach / 1.1) > tuning.CONTROL_VARIATE.depth:
         reach /= 1.1
-    while depth(reach) < _NEGLIGIBLE:
+    while depth(reach) < tuning.CONTROL_VARIATE.depth:
         reach *= 1.1
-    y = np.linspace(-reach, reach, _POINTS)
+    y = np.linspace(-reach, reach, tuning.CONTROL_VARIATE.points)
     density = np.exp(-depth(y))
     g = vectorised(scene.numerical_observable(), (symbols.y,))(y) - eigenfunctions.mean(scene)
     left = scipy.integrate.cumulative_simpson(g * density, x=y, initial=0)

@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 from nonsmooth.checks import require_count
 from nonsmooth.errors import SceneError
-from nonsmooth.paths import schemes
 from nonsmooth.paths.control_variate import poisson_slope
 from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.paths.time_loop import march, march_pair
 from nonsmooth.scenes.scene import Scene
@@ -99,7 +99,7 @@ def over_blocks(
     """
     slope = poisson_slope(scene) if control else None
     coefficients = {
-        h: schemes.coefficients(scene, sampling.scheme, h, sampling.precision, slope)
+        h: registry.coefficients(scene, sampling.scheme, h, sampling.precision, slope)
         for h in {h for _, h in grid}
     }
 
@@ -188,7 +188,7 @@ def coupled(
     scheme, precision = sampling.scheme, sampling.precision
     grid = equal_steps(times, sampling.step)
     pairs = [
-        tuple(schemes.coefficients(scene, scheme, length, precision) for length in (h / 2, h))
+        tuple(registry.coefficients(scene, scheme, length, precision) for length in (h / 2, h))
         for _, h in grid
     ]
 
@@ -200,7 +200,7 @@ def coupled(
         vector = np.ones((4, count))
         began = 0.0
         for k, ((steps, h), (fine, coarse)) in enumerate(zip(grid, pairs, strict=True)):
-            given = schemes.on_given_increments(coarse)
+            given = registry.on_given_increments(coarse)
             march_pair(fine, given, panel, other, count, steps, *levels, began, passage)
             began += steps * h
             half, whole = panel.total[TOTAL_DELTA, :count], other.total[TOTAL_DELTA, :count]

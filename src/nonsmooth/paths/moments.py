@@ -1,11 +1,15 @@
 """Moments of int g from sums over paths, by regression on the control variates."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nonsmooth.errors import SceneError
+from nonsmooth.paths import tuning
+
+_MOMENTS = ("mean", "mean_error", "variance", "variance_error")
 
 
-def moments(gram):
+def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
     """Mean and variance of D, their standard errors, by regression on the control variates.
 
     Parameters
@@ -16,8 +20,9 @@ def moments(gram):
     Returns
     -------
     dict
-        Arrays over time: `mean`, `mean_error`, `variance`, `variance_error` (standard errors).
-        Where no path has moved yet, as if one had: as far as those that have, when the first do.
+        Arrays over time: `mean`, `mean_error`, `variance`, `variance_error` (standard errors). At
+        early times no path may have moved yet. Their errors are then as if one path had, by as much
+        as paths have on average at the first time at which some have.
 
     Raises
     ------
@@ -36,13 +41,15 @@ def moments(gram):
     covariance = gram / paths[:, None, None] - average[:, :, None] * average[:, None, :]
     result = {name: np.empty(len(gram)) for name in _MOMENTS}
     for k, (a, c, count) in enumerate(zip(average, covariance, paths, strict=True)):
-        if count < 2 or np.any(np.diag(c)[1:3] < _RESOLVED * gram[k].diagonal()[1:3] / count):
+        if count < 2 or np.any(
+            np.diag(c)[1:3] < tuning.MONTE_CARLO.resolved * gram[k].diagonal()[1:3] / count
+        ):
             raise SceneError(
                 "the spread of int g is lost in its mean, or there is one path only; "
                 "subtract the mean from g or take more paths"
             )
         plain = c[1, 1] * count / (count - 1)
-        # to first order the sample variance is the mean of D^2 - 2 E[D] D
+        # To first order the sample variance is the mean of D^2 - 2 E[D] D.
         for name, value, weights in (
             ("mean", a[1], np.array([0, 1, 0, 0, 0])),
             ("variance", plain, np.array([0, -2 * a[1], 1, 0, 0])),
@@ -52,19 +59,13 @@ def moments(gram):
             result[name][k] = value - slope @ a[3:]
             result[f"{name}_error"][k] = np.sqrt(max(weights @ c @ weights, 0.0) / count)
     first = int(np.argmax(moved))
-    square = gram[first, 2, 2] / gram[first, 1, 1]  # of those that have moved
+    square = gram[first, 2, 2] / gram[first, 1, 1]  # E D^4 / E D^2 of the moved paths
     result["mean_error"][:first] = np.sqrt(square) / paths[:first]
     result["variance_error"][:first] = square / paths[:first]
     return result
 
 
-_RESOLVED = 1e-10  # a variance below this part of the mean square has no digits left
-
-
-_MOMENTS = ("mean", "mean_error", "variance", "variance_error")
-
-
-def step_bias(change, order):
+def step_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]:
     """Bias of the variance of D by the step, from `coupled`, and its standard error.
 
     Parameters
@@ -81,7 +82,7 @@ def step_bias(change, order):
     average = change[:, 0] / count
     covariance = change / count[..., None] - average[:, :, None] * average[:, None, :]
     shift, square, mean = average[:, 1:].T
-    # Var D_h - Var D_h/2, and its derivatives by the averages
+    # Var D_h - Var D_h/2, and its derivatives by the averages.
     value = square - shift * (2 * mean + shift)
     weights = np.stack([0 * mean, -2 * (mean + shift), 0 * mean + 1, -2 * shift], axis=1)
     factor = 1 / (1 - 2**-order)
@@ -89,7 +90,7 @@ def step_bias(change, order):
     return factor * value, factor * np.sqrt(np.maximum(variance, 0.0) / count[:, 0])
 
 
-def mean_bias(change, order):
+def mean_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]:
     """Bias of the mean of D by the step, and its standard error; see `step_bias`."""
     count = change[:, 0, 0]
     shift = change[:, 0, 1] / count
@@ -98,7 +99,7 @@ def mean_bias(change, order):
     return factor * shift, factor * spread
 
 
-def variance_of_fine(change):
+def variance_of_fine(change: np.ndarray) -> np.ndarray:
     """Variance of D with the half step, from `coupled`, shape (t,)."""
     count = change[:, 0, 0]
     return change[:, 3, 3] / count - (change[:, 0, 3] / count) ** 2

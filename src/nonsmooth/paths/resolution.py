@@ -7,42 +7,52 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.paths import schemes
+from nonsmooth.paths import tuning
 from nonsmooth.paths.ensembles import coupled, gram
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import mean_bias, moments, step_bias
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 
-MOST_STEPS = 1e13  # of all paths together: hours
 
-
-_LONGEST_STEP = 0.1  # times the smaller of 1 and 1/C_b
-
-
-PILOT_PATHS = 4096
-
-
-# A tolerance is met if these many standard errors and the bias of the step are within it: one
-# result in 400 misses it.
-SIGMAS = 3.0
-
-
-SPREAD_SHARE = 0.75  # of the tolerance, for the standard errors; least work at the weak order 3/2
-
-
-def coarse_step(scene, scheme="strang"):
+def coarse_step(scene: Scene, scheme: str = "strang") -> float:
     """Step from which the search for one with a given bias starts."""
-    longest = schemes.scheme(scene, scheme).longest_step(scene)
-    return min(_LONGEST_STEP * min(1.0, 1 / scene.damping), longest / 4)
+    longest = registry.scheme(scene, scheme).longest_step(scene)
+    chosen = tuning.MONTE_CARLO
+    return min(chosen.coarse_step * min(1.0, 1 / scene.damping), chosen.stable_share * longest)
 
 
-def paths_for(deviation, tol):
+def first_step(scene: Scene, times: np.ndarray, scheme: str = "strang") -> float:
+    """Step from which the search starts if the paths end at the last of the times."""
+    return min(coarse_step(scene, scheme), float(times[-1]) / tuning.MONTE_CARLO.least_steps)
+
+
+def paths_for(deviation: float, tol: float) -> int:
     """Count the paths on whose average, of a given standard deviation, `tol` can be promised."""
-    return math.ceil((SIGMAS * deviation / (SPREAD_SHARE * tol)) ** 2)
+    chosen = tuning.MONTE_CARLO
+    return math.ceil((chosen.sigmas * deviation / (chosen.spread_share * tol)) ** 2)
 
 
-def require_possible(paths, steps, what, tol, most=MOST_STEPS):
+def paths_of_variance(tol: float) -> int:
+    """Count the paths that sample a variance to a relative tolerance."""
+    # The sample variance of normal variables has the relative standard error sqrt(2 / paths).
+    # That makes 32 / tol^2 for three standard errors within three quarters of the tolerance.
+    return math.ceil(32 / tol**2)
+
+
+def halving_paths(paths: int) -> int:
+    """Count the paths that measure the bias of the step, if there are so many altogether."""
+    return min(paths, max(tuning.MONTE_CARLO.pilot_paths, paths // tuning.MONTE_CARLO.halved))
+
+
+def require_possible(
+    paths: float,
+    steps: float,
+    what: str,
+    tol: float,
+    most: float = tuning.MONTE_CARLO.most_steps,
+) -> None:
     """Refuse a tolerance that would take more steps of all paths together than can be waited for.
 
     Raises
@@ -58,7 +68,7 @@ def require_possible(paths, steps, what, tol, most=MOST_STEPS):
         )
 
 
-def refined_step(step, bias, allowed, order):
+def refined_step(step: float, bias: float, allowed: float, order: float) -> float:
     """Step at which a bias known at a coarser one is as small as allowed, by the weak order."""
     return float(step * min(1.0, (allowed / bias) ** (1 / order)))
 
@@ -71,9 +81,9 @@ def halved_step_bias(scene: Scene, times: ArrayLike, sampling: Sampling) -> dict
     dict
         `mean` and `variance`: the bias by the step of each, over the times, and its standard error.
     """
-    chosen = schemes.scheme(scene, sampling.scheme)
+    chosen = registry.scheme(scene, sampling.scheme)
     order = chosen.weak_order(scene)
-    if chosen.coupled:
+    if chosen.shares_noise:
         change, _ = coupled(scene, times, sampling)
         return {"mean": mean_bias(change, order), "variance": step_bias(change, order)}
     # independent runs on a grid and on its halves
@@ -98,18 +108,21 @@ def choose_step(
     scheme: str,
 ) -> float:
     """Find the step whose relative bias of the variance is below `tol`, from a coarse pilot."""
-    step = min(coarse_step(scene, scheme), float(times[-1]) / 32)
-    pilot = Sampling(step, PILOT_PATHS, labelled(seed, "pilot"), threads=threads, scheme=scheme)
+    step = first_step(scene, times, scheme)
+    pilot = Sampling(
+        step,
+        tuning.MONTE_CARLO.pilot_paths,
+        labelled(seed, "pilot"),
+        threads=threads,
+        scheme=scheme,
+    )
     found = moments(gram(scene, times, pilot))
     bias, error = halved_step_bias(scene, times, pilot)["variance"]
     worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
-    return refined_step(step, worst, tol, schemes.scheme(scene, scheme).weak_order(scene))
+    return refined_step(step, worst, tol, registry.scheme(scene, scheme).weak_order(scene))
 
 
-_MEASURABLE = 0.2  # largest relative bias of Var D at which halving the step measures it
-
-
-def require_resolved(step, variance, bias, error):
+def require_resolved(step: float, variance: float, bias: float, error: float) -> None:
     """Refuse a step so long that halving it does not measure its bias.
 
     The bias follows the weak order for steps that are short against every time scale of the
@@ -126,7 +139,7 @@ def require_resolved(step, variance, bias, error):
     ToleranceError
         If the bias is significantly above a fifth of the variance.
     """
-    if abs(bias) > max(_MEASURABLE * variance, 4 * error):
+    if abs(bias) > max(tuning.MONTE_CARLO.measurable * variance, 4 * error):
         raise ToleranceError(
             f"step = {step:g} is too long for this scene: halving it puts the bias of the variance "
             f"of int g at {abs(bias) / variance:.0%}, where it is no measure of it; "

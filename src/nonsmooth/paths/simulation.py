@@ -1,39 +1,42 @@
-"""Paths and the moments of their integrals: `simulate`."""
+"""Simulation of a scene: `simulate`."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from nonsmooth.checks import require_count, require_increasing, require_positive
 from nonsmooth.errors import SceneError
-from nonsmooth.paths import schemes
+from nonsmooth.paths import tuning
 from nonsmooth.paths.ensembles import gram, paths_at
 from nonsmooth.paths.moments import moments
 from nonsmooth.paths.resolution import (
-    PILOT_PATHS,
     choose_step,
     halved_step_bias,
+    halving_paths,
+    paths_of_variance,
     require_possible,
     require_resolved,
 )
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
+from nonsmooth.scenes.scene import Scene
 
 
 def simulate(
-    scene,
-    horizon,
-    tol=1e-2,
-    step=None,
-    paths=None,
-    seed=0,
-    times=None,
-    keep="moments",
-    scheme="strang",
-    precision="float32",
-    threads=None,
-):
+    scene: Scene,
+    horizon: float,
+    tol: float = 1e-2,
+    step: float | None = None,
+    paths: int | None = None,
+    seed: int | tuple = 0,
+    times: ArrayLike | None = None,
+    keep: str = "moments",
+    scheme: str = "strang",
+    precision: str = "float32",
+    threads: int | None = None,
+) -> xr.Dataset:
     """Simulate a scene.
 
     Parameters
@@ -54,9 +57,10 @@ def simulate(
     times : array_like, shape (t,), optional
         Increasing output times in (0, horizon]; 200 equidistant ones unless given.
     keep : {"moments", "paths"}
-        Whether to return statistics, in O(1) memory, or the paths at the output times.
+        Whether to return statistics, whose memory does not grow with the number of paths, or the
+        paths at the output times.
     scheme : str
-        A name in `schemes.SCHEMES`.
+        A name in `schemes.registry.SCHEMES`; `strang` takes every scene of the paper.
     precision : {"float32", "float64"}
         Arithmetic of the moments' steps; their sums, and kept paths, are in double precision.
     threads : int, optional
@@ -85,39 +89,41 @@ def simulate(
         raise SceneError(f"unknown precision {precision!r}; choose 'float32' or 'float64'")
     times = _output_times(horizon, times)
     require_positive("tol", tol)
-    schemes.scheme(scene, scheme)  # refuses what it cannot simulate
+    registry.scheme(scene, scheme)  # refuses what it cannot simulate
     chosen = paths is None
-    paths = math.ceil(32 / tol**2) if chosen else paths
+    paths = paths_of_variance(tol) if chosen else paths
     require_count("paths", paths)
     if step is None:
-        step = choose_step(scene, times[-1:], tol / 4, seed, threads, scheme)
+        share = (1 - tuning.MONTE_CARLO.spread_share) * tol
+        step = choose_step(scene, times[-1:], share, seed, threads, scheme)
     require_positive("step", step)
     if chosen:
         require_possible(paths, times[-1] / step, "the variance of int g is sampled", tol)
     sampling = Sampling(step, paths, seed, threads=threads, scheme=scheme, precision=precision)
-    attributes = {"step": step, "paths": paths}
-    if keep == "paths":
-        kept = paths_at(scene, times, sampling)
-        return xr.Dataset(
-            {
-                name: (("path", "time"), kept[:, i].T)
-                for i, name in enumerate([*scene.state, "delta"])
-            },
-            coords={"time": np.concatenate([[0.0], times])},
-            attrs=attributes,
-        )
+    data = (_paths if keep == "paths" else _statistics)(scene, times, sampling)
+    return data.assign_attrs(step=step, paths=paths)
+
+
+def _paths(scene, times, sampling):
+    kept = paths_at(scene, times, sampling)
+    names = [*scene.state, "delta"]
+    return xr.Dataset(
+        {name: (("path", "time"), kept[:, i].T) for i, name in enumerate(names)},
+        coords={"time": np.concatenate([[0.0], times])},
+    )
+
+
+def _statistics(scene, times, sampling):
     found = moments(gram(scene, times, sampling))
-    fewer = min(paths, max(PILOT_PATHS, paths // 8))
-    halving = replace(sampling.labelled("halving"), paths=fewer, precision="float32")
+    halving = replace(
+        sampling.labelled("halving"), paths=halving_paths(sampling.paths), precision="float32"
+    )
     for name, bias in halved_step_bias(scene, times, halving).items():
         found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
-    require_resolved(
-        step, *(found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))
-    )
+    last = (found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))
+    require_resolved(sampling.step, *last)
     return xr.Dataset(
-        {name: ("time", values) for name, values in found.items()},
-        coords={"time": times},
-        attrs=attributes,
+        {name: ("time", values) for name, values in found.items()}, coords={"time": times}
     )
 
 

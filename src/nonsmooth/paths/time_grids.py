@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from nonsmooth.paths import tuning
+
 
 def logarithmic(first, last, count):
     """Return times from `first` to `last`, nearly equidistant in the logarithm.
@@ -31,7 +33,7 @@ def equal_steps(times, step):
     """
     times = np.asarray(times, dtype=float)
     spans = np.diff(times, prepend=0.0)
-    longest = np.minimum(step, np.maximum(times / 16, 1e-300))
+    longest = np.minimum(step, np.maximum(times / tuning.TIME_GRID.first_steps, 1e-300))
     if not np.all(spans > 0):
         raise ValueError("output times must be positive and increase")
     counts = np.maximum(np.ceil(spans / longest - 1e-9).astype(int), 1)

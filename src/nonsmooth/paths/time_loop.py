@@ -19,7 +19,7 @@ from nonsmooth.paths.kernels.panel import (
 )
 from nonsmooth.paths.kernels.random_numbers import normals
 from nonsmooth.paths.kernels.vector_math import fma, like
-from nonsmooth.paths.schemes import drift_implicit, dry_friction, euler_maruyama, lie, strang
+from nonsmooth.paths.schemes import registry
 
 
 @intrinsic
@@ -30,22 +30,13 @@ def _pointer(typing, address):
     return numba.types.CPointer(address.dtype)(address), generate
 
 
-_MODULES = {
-    strang.Strang: strang,
-    euler_maruyama.EulerMaruyama: euler_maruyama,
-    drift_implicit.DriftImplicit: drift_implicit,
-    dry_friction.DryFriction: dry_friction,
-    lie.Lie: lie,
-}
-
-
 def _flow(s, data, first, last, lanes):
     raise TypeError("flow is for kernels")
 
 
 @overload(_flow)
 def _choose_flow(s, data, first, last, lanes):
-    chosen = _MODULES[s.instance_class].flow
+    chosen = registry.of_coefficients(s.instance_class).flow
     return lambda s, data, first, last, lanes: chosen(s, data, first, last, lanes)
 
 
@@ -55,7 +46,7 @@ def _kick(s, data, normal, lanes):
 
 @overload(_kick)
 def _choose_kick(s, data, normal, lanes):
-    chosen = _MODULES[s.instance_class].kick
+    chosen = registry.of_coefficients(s.instance_class).kick
     return lambda s, data, normal, lanes: chosen(s, data, normal, lanes)
 
 

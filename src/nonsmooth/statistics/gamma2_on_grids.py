@@ -236,12 +236,3 @@ def _tenths(number: float) -> Iterator[float]:
     while True:
         yield number
         number = number / 10
-
-
-def growth_on_ladder(scene, tol):
-    """Return the value and error of `gamma2_by_uniform_refinement`, or None."""
-    found = gamma2_by_uniform_refinement(scene, tol)
-    return (found.value, found.error) if found.met else None
-
-
-growth_to = gamma2_by_combination

@@ -1,19 +1,29 @@
-"""gamma^2 by Monte Carlo: the growth rate of the variance of int_0^t g, for every scene.
+"""gamma^2 by Monte Carlo, for every scene: the slope of the variance of int_0^t g.
 
 Var D(t) = gamma^2 t + const + an exponentially small rest, D(t) = int_0^t g. The slope between
 two times is therefore free of the constant, which Var D(t) / t is not.
 """
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
-from nonsmooth.paths import schemes
-from nonsmooth.paths.ensembles import coupled
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.estimate import require
+from nonsmooth.grids import potential_wells
+from nonsmooth.paths.ensembles import coupled, integrals_at
+from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import step_bias
+from nonsmooth.paths.resolution import coarse_step, paths_for, refined_step
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
+from nonsmooth.paths.tuning import MONTE_CARLO
+from nonsmooth.scenes.relaxation import rate_at_infinity
 from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics import tuning
 
 
 @dataclass(frozen=True)
@@ -23,12 +33,13 @@ class Slopes:
     Attributes
     ----------
     gamma2, gamma2_error : float
-        gamma^2 and its standard error.
+        Slope of the variance and its standard error.
     mean, mean_error : float
-        Stationary mean of g and its standard error.
+        Slope of the mean, the stationary mean of g, and its standard error.
     settling, settling_error : float
-        By how much the slope of the second half exceeds that of the first, and its standard
-        error: 0 within the error once the scene has forgotten its start and its correlations.
+        By how much the slope of the variance over the second half exceeds that over the first, and
+        its standard error. It is 0 within the error once the scene has forgotten its start and its
+        correlations.
     """
 
     gamma2: float
@@ -39,19 +50,24 @@ class Slopes:
     settling_error: float
 
     @property
-    def settled(self):
-        """Whether both halves agree within four standard errors, or to a thousandth."""
-        return abs(self.settling) <= max(4 * self.settling_error, 1e-3 * abs(self.gamma2))
+    def settled(self) -> bool:
+        """Whether the slopes of the variance over both halves agree."""
+        return abs(self.settling) <= _allowed(self.settling_error, self.gamma2)
 
-    def agrees(self, other):
-        """Whether the slopes of two samples agree within four standard errors, or a thousandth."""
+    def agrees(self, other: "Slopes") -> bool:
+        """Whether the slopes agree with those of another sample."""
         return all(
-            abs(ours - theirs) <= max(4 * float(np.hypot(error, other_error)), 1e-3 * abs(ours))
+            abs(ours - theirs) <= _allowed(float(np.hypot(error, other_error)), ours)
             for ours, error, theirs, other_error in (
                 (self.gamma2, self.gamma2_error, other.gamma2, other.gamma2_error),
                 (self.mean, self.mean_error, other.mean, other.mean_error),
             )
         )
+
+
+def _allowed(error, size):
+    settled = tuning.SAMPLED_GAMMA2
+    return max(settled.agreement_errors * error, settled.agreement * abs(size))
 
 
 def slopes(sample: np.ndarray, times: Sequence[float]) -> Slopes:
@@ -60,17 +76,35 @@ def slopes(sample: np.ndarray, times: Sequence[float]) -> Slopes:
     Parameters
     ----------
     sample : numpy.ndarray, shape (3, 3, paths)
-    times : sequence of float, three increasing ones
+    times : sequence of float
+        Three increasing ones.
 
     Returns
     -------
     Slopes
     """
     first, second, whole = (
-        _slopes(sample[[i, k]], times[k] - times[i]) for i, k in ((0, 1), (1, 2), (0, 2))
+        _slopes_between(sample[[i, k]], times[k] - times[i]) for i, k in ((0, 1), (1, 2), (0, 2))
     )
     settling = second[0] - first[0]
     return Slopes(*whole, settling, float(np.hypot(first[1], second[1])))
+
+
+def _slopes_between(sample, span):
+    """Slopes of the variance and of the mean of D, each with its standard error."""
+    (d1, m1, q1), (d2, m2, q2) = sample
+    paths = len(d1)
+    square = ((d2 - d2.mean()) ** 2 - (d1 - d1.mean()) ** 2) / span * (paths / (paths - 1))
+    gamma2 = _regressed(square, (m2**2 - q2 - m1**2 + q1) / span)
+    return *gamma2, *_regressed((d2 - d1) / span, (m2 - m1) / span)
+
+
+def _regressed(values, control):
+    """Mean of values and its standard error, given a control variate of mean 0."""
+    spread = control.var()
+    slope = np.mean((values - values.mean()) * control) / spread if spread > 0 else 0.0
+    rest = values - slope * control
+    return float(rest.mean()), float(rest.std(ddof=1) / np.sqrt(len(values)))
 
 
 def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tuple[float, float]:
@@ -82,6 +116,7 @@ def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tup
     times : sequence of float
         The slope is from the first to the last.
     sampling : Sampling
+        With the step whose bias is asked for.
 
     Returns
     -------
@@ -89,22 +124,127 @@ def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tup
         The error is that of two independent variances, which is larger than that of the slope.
     """
     change, _ = coupled(scene, [times[0], times[-1]], sampling)
-    bias, error = step_bias(change, schemes.scheme(scene, sampling.scheme).weak_order(scene))
+    bias, error = step_bias(change, registry.scheme(scene, sampling.scheme).weak_order(scene))
     span = times[-1] - times[0]
     return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
 
 
-def _slopes(sample, span):
-    (d1, m1, q1), (d2, m2, q2) = sample
-    paths = len(d1)
-    square = ((d2 - d2.mean()) ** 2 - (d1 - d1.mean()) ** 2) / span * (paths / (paths - 1))
-    rate = _regressed(square, (m2**2 - q2 - m1**2 + q1) / span)
-    return *rate, *_regressed((d2 - d1) / span, (m2 - m1) / span)
+def sampled_gamma2(
+    scene: Scene, tol: float, seed: int | tuple = 0, threads: int | None = None
+) -> tuple[float, float]:
+    """Sample gamma^2 with as many paths and as short a step as a tolerance takes.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float
+        Relative; it bounds the bias of the step and three standard errors.
+    seed : int or tuple
+    threads : int, optional
+
+    Returns
+    -------
+    value, error : float
+        The error is the bias of the step and the standard error together.
+
+    Raises
+    ------
+    ToleranceError
+        If `tol` is not met, or the slope does not settle.
+    """
+    least = tuning.SAMPLED_GAMMA2.least_tolerance
+    if not tol >= least:
+        raise ToleranceError(
+            f"Monte Carlo cannot reach tol = {tol:g} for gamma^2; use tol >= {least:g} "
+            "or method='deterministic'"
+        )
+    paths = fewer = MONTE_CARLO.pilot_paths
+    step = coarse_step(scene)
+    order = registry.scheme(scene).weak_order(scene)
+    for attempt in range(MONTE_CARLO.attempts):
+        own = Sampling(step, paths, labelled(seed, attempt), threads=threads)
+        times, found = _settled(scene, own)
+        halving = Sampling(step, fewer, labelled(own.seed, "halving"), threads=threads)
+        bias, spread = gamma2_bias(scene, times, halving)
+        deviation = float(np.hypot(found.gamma2_error, spread))
+        error = abs(bias) + deviation
+        met = abs(bias) + MONTE_CARLO.sigmas * deviation <= tol * found.gamma2
+        if found.gamma2 < 5 * error and (met or attempt > 0):
+            raise ToleranceError(
+                f"gamma^2 = {found.gamma2:.1e} with an error of {error:.1e} may be 0, which it is "
+                "if int_0^t g stays bounded, as for g = y where the displacement is confined; "
+                "choose another observable, such as x"
+            )
+        if met:
+            break
+        allowed = max(tol * found.gamma2, error / 2)
+        share = MONTE_CARLO.sigmas * spread / (tuning.SAMPLED_GAMMA2.halving_share * allowed)
+        paths = max(paths, paths_for(math.sqrt(paths) * found.gamma2_error, allowed))
+        fewer = max(fewer, math.ceil(fewer * share**2))
+        step = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * allowed, order)
+    require(met, found.gamma2, error, tol)
+    return found.gamma2, error
 
 
-def _regressed(values, control):
-    """Mean of values and its standard error, given a control variate of mean 0."""
-    spread = control.var()
-    slope = np.mean((values - values.mean()) * control) / spread if spread > 0 else 0.0
-    rest = values - slope * control
-    return float(rest.mean()), float(rest.std(ddof=1) / np.sqrt(len(values)))
+def sampled_mean(
+    scene: Scene, seed: int | tuple = 0, threads: int | None = None
+) -> tuple[float, float]:
+    """Sample the stationary mean of g, with its standard error.
+
+    Raises
+    ------
+    ToleranceError
+        If the slope of the variance does not settle.
+    """
+    own = labelled(seed, "mean")
+    sampling = Sampling(_short_step(scene), MONTE_CARLO.pilot_paths, own, threads=threads)
+    _, found = _settled(scene, sampling)
+    return found.mean, found.mean_error
+
+
+def _short_step(scene):
+    """Step whose bias is below the standard error of the mean; it is not measured."""
+    short = tuning.SAMPLED_GAMMA2.step_of_mean * min(1.0, 1 / scene.damping)
+    return min(short, registry.scheme(scene).longest_step(scene) / 2)
+
+
+def _first_times(scene):
+    """Choose the first times of the slope, no shorter than the memory of the drift."""
+    settled = tuning.SAMPLED_GAMMA2
+    try:
+        rate = rate_at_infinity(scene.with_n(min(scene.n, settled.soft))).value / 2
+    except SceneError:  # The drift is not linear far out. Then `_settled` has to find the times.
+        return settled.times
+    first = settled.times[0]
+    return tuple(max(1.0, settled.relaxed / (rate * first)) * t for t in settled.times)
+
+
+def _settled(scene, sampling):
+    """Lengthen the times until the slope of the variance depends neither on them nor on the start.
+
+    Paths that never leave the well they start in settle too, on the wrong slope. A few paths from
+    each well of the potentials, the scouts, have to agree.
+    """
+    elsewhere = [scene.with_start(start) for start in potential_wells.starts(scene)]
+    times = _first_times(scene)
+    for attempt in range(tuning.SAMPLED_GAMMA2.doublings):
+        scouts = []
+        own = sampling.labelled(attempt)
+        if len(elsewhere) > 1:
+            few = replace(own, paths=tuning.SAMPLED_GAMMA2.scouts)
+            scouts = [slopes(integrals_at(other, times, few), times) for other in elsewhere]
+        forgotten = all(a.agrees(b) for a, b in combinations(scouts, 2))
+        if forgotten:
+            found = slopes(integrals_at(scene, times, own), times)
+            if found.settled and all(found.agrees(scout) for scout in scouts):
+                return times, found
+        times = tuple(2 * t for t in times)
+    changes = (
+        f"{found.gamma2:.3g}, still changing by {found.settling:.1g}"
+        if forgotten
+        else f"paths from {len(elsewhere)} wells of the potentials still differ"
+    )
+    raise ToleranceError(
+        f"the growth rate of the variance has not settled by t = {times[-1] / 2:g}: {changes}; "
+        "the scene mixes slowly, or int_0^t g has no such rate"
+    )

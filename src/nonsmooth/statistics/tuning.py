@@ -3,6 +3,7 @@
 Each line says what the number is and where it comes from.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -68,7 +69,63 @@ class SpectralGap:
     backward: float = 5e-13  # fitted: what moves eigenvalues that coincide is up to 2e-13
 
 
+@dataclass(frozen=True)
+class Gamma2:
+    """Tolerances of gamma^2 for one to four state variables."""
+
+    # chosen: relative; what the deterministic methods reach within about a minute
+    tolerance: tuple[float, ...] = (1e-10, 1e-6, 2e-4, 3e-3)
+    # fitted: benchmarks/requests.py; from these tolerances on Monte Carlo is the faster
+    faster_sampled: tuple[float, ...] = (math.inf, math.inf, 1e-2, 3e-3)
+
+
+@dataclass(frozen=True)
+class SampledGamma2:
+    """Times and sizes of gamma^2 by Monte Carlo."""
+
+    # chosen: the least relative tolerance that is tried; work grows as its inverse square or faster
+    least_tolerance: float = 1e-3
+    # chosen: between which the slope is taken, unless it still changes; five correlation times or
+    # more pass before the first in scenes whose time scale is 1
+    times: tuple[float, ...] = (10.0, 60.0, 110.0)
+    # chosen: relaxation times of the drift far out that pass before the first of them at least
+    relaxed: float = 2.0
+    # chosen: n whose drift is looked at for that instead of a larger one
+    soft: float = 1e3
+    # chosen: how often the times are doubled, up to 64 times those above
+    doublings: int = 7
+    # chosen: paths from each well; a slope of theirs that is off by a tenth is seen
+    scouts: int = 1024
+    # chosen: slopes agree within so many standard errors, or to this relative difference
+    agreement_errors: float = 4.0
+    agreement: float = 1e-3
+    # chosen: part of the tolerance for the standard errors of the bias
+    halving_share: float = 0.4
+    # chosen: step for a stationary mean, times the smaller of 1 and 1/C_b; its bias is below 1e-3
+    step_of_mean: float = 0.02
+
+
+@dataclass(frozen=True)
+class Variance:
+    """Tolerances and resolutions of v(0, tau)."""
+
+    # chosen: absolute, of v(tau)/tau, for one and two state variables
+    tolerance: tuple[float, ...] = (1e-9, 1e-5)
+    # chosen: polynomial degrees of the eigenfunctions, until two agree
+    degrees: tuple[int, ...] = (8, 12, 16, 20, 24)
+    # fitted: benchmarks/requests.py; steps of all paths that take less time than grids for two
+    # variables
+    few_steps: float = 5e7
+    # derived: relative standard error of a variance that rests on 1 / 0.2^2 = 25 paths
+    resting: float = 0.2
+    # chosen: root of the factor by which paths are added at once where it rests on fewer
+    more: float = 6.0
+
+
 GAMMA2_ON_GRIDS = Gamma2OnGrids()
 MOMENTS_ON_GRIDS = MomentsOnGrids()
 INVARIANT_DENSITY = InvariantDensity()
 SPECTRAL_GAP = SpectralGap()
+GAMMA2 = Gamma2()
+SAMPLED_GAMMA2 = SampledGamma2()
+VARIANCE = Variance()

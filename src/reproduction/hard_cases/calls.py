@@ -12,7 +12,8 @@ from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.line.finite_differences import moments_with_error
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.variance import asymptotic_variance, variance
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
+from nonsmooth.statistics.variance import variance
 from reproduction.hard_cases.record import DEVIATIONS, Result
 
 # The bias of a step follows from halving it and from the weak order of the scheme, say 3/2. If the

@@ -5,10 +5,9 @@ import time
 import numpy as np
 
 from nonsmooth.errors import SceneError
-from nonsmooth.paths import schemes
 from nonsmooth.paths.kernels.compilation import kernel
 from nonsmooth.paths.kernels.panel import STATE, new_panel
-from nonsmooth.paths.schemes import strang
+from nonsmooth.paths.schemes import registry, strang
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 
@@ -55,7 +54,7 @@ class BrownianPaths:
         self.reference, _ = self.follow(doublings)
 
     def _coefficients(self, level):
-        return schemes.coefficients(self.scene, "strang", self.horizon / 2**level, "float64")
+        return registry.coefficients(self.scene, "strang", self.horizon / 2**level, "float64")
 
     def _increments(self, level):
         """Gaussian increments of the steps: pairs of finer ones, joined."""
@@ -80,7 +79,7 @@ class BrownianPaths:
             After each step.
         seconds : float
         """
-        s = schemes.on_given_increments(self._coefficients(level))
+        s = registry.on_given_increments(self._coefficients(level))
         increments = self._increments(level)
         kept = np.empty(increments.shape)
         data = new_panel(self.scene, 0, 0, "float64").data

@@ -1,6 +1,5 @@
 """Scenes that mix slowly: right as long as they are solved at all, and refused beyond."""
 
-import importlib
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +11,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import potential_wells, tuning
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.symbols import eta
+from nonsmooth.statistics import tuning as statistics_tuning
 
 
 def langevin_growth(noise):
@@ -82,7 +82,8 @@ def test_a_rate_that_is_out_of_reach_is_refused(monkeypatch):
 
 def test_paths_that_never_leave_their_well_are_refused(monkeypatch):
     """From x = -1 the variance within one well settles, and at 16 kT all stay there."""
-    monkeypatch.setattr(importlib.import_module("nonsmooth.statistics.variance"), "_DOUBLINGS", 2)
+    few = replace(statistics_tuning.SAMPLED_GAMMA2, doublings=2)
+    monkeypatch.setattr(statistics_tuning, "SAMPLED_GAMMA2", few)
     scene = ns.Scene(
         "obstacle", potential="x**2/2 + 8*exp(-4*x**2)", observable="x", start={"x": -1.0}
     )

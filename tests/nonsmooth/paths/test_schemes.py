@@ -15,7 +15,7 @@ from nonsmooth.paths import ensembles, moments
 from nonsmooth.paths.kernels.panel import DELTA, ROWS, STATE, WIDTH, X, Y, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.paths.schemes import SCHEMES, coefficients, scheme
+from nonsmooth.paths.schemes.registry import SCHEMES, coefficients, scheme
 from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes import symbols
 
@@ -25,14 +25,14 @@ HORIZON = 10.0
 
 def kernel_step(name, scene, h, state, normal):
     """Apply one kick and the flow to the next kick to many states; return them and int g."""
-    s, module = coefficients(scene, name, h, "float64"), SCHEMES[name].module
+    s, own = coefficients(scene, name, h, "float64"), SCHEMES[name]
     after, gain = np.empty((4, len(normal))), np.empty(len(normal))
     for first in range(0, len(normal), WIDTH):
         part = slice(first, first + WIDTH)
         data, lanes = np.zeros((ROWS, WIDTH)), len(normal[part])
         data[list(STATE), :lanes], data[0, :lanes] = state[:, part], normal[part]
-        module.kick(s, data, 0, lanes)
-        module.flow(s, data, False, False, lanes)
+        own.kick(s, data, 0, lanes)
+        own.flow(s, data, False, False, lanes)
         after[:, part], gain[part] = data[list(STATE), :lanes], data[DELTA, :lanes]
     return after, gain
 
@@ -220,7 +220,7 @@ class TestStability:
                 panel.data[Y if model == "friction" else X] += (
                     50.0  # so far that overshooting the dead zone does not save it
                 )
-                s = SCHEMES[name].module.coefficients(scene, h)
+                s = SCHEMES[name].coefficients(scene, h)
                 march(s, panel, BLOCK, 2000, -np.inf, np.inf)
                 bounded = np.max(np.abs(panel.data[list(STATE), :BLOCK])) < 100
                 assert bounded == stable

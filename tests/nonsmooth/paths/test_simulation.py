@@ -13,7 +13,7 @@ from nonsmooth.paths.kernels.panel import ETA, ZETA, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.moments import moments, step_bias
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.paths.schemes import coefficients, on_given_increments
+from nonsmooth.paths.schemes.registry import coefficients, on_given_increments
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.paths.time_grids import equal_steps, logarithmic
 from nonsmooth.paths.time_loop import march_pair

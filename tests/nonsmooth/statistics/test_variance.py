@@ -5,7 +5,7 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.statistics.variance import stationary_mean
+from nonsmooth.statistics.asymptotic_variance import stationary_mean
 
 
 @pytest.mark.parametrize("n", [100.0, np.inf])

@@ -1,7 +1,8 @@
 """One column of table 4 by spectral elements, and gamma_n^2 in closed form."""
 
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.variance import asymptotic_variance, variance
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
+from nonsmooth.statistics.variance import variance
 from reproduction import artifact
 from reproduction.jobs import produce
 

@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from nonsmooth.paths import schemes
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.moments import step_bias
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.variance import variance
 from reproduction import artifact
@@ -25,7 +25,7 @@ def bias_of_gamma2(scene, time, step, paths, seed, threads):
     scene = Scene(**scene)
     sampling = Sampling(step, paths, (seed, "growth"), threads=threads)
     change, _ = coupled(scene, [time], sampling)
-    bias, error = step_bias(change, schemes.scheme(scene, "strang").weak_order(scene))
+    bias, error = step_bias(change, registry.scheme(scene, "strang").weak_order(scene))
     v = variance(scene, [time])["v"].values
     return artifact.dataset(
         "Bias of gamma^2 by the time step",

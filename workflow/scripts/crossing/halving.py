@@ -4,8 +4,8 @@ from functools import partial
 
 from nonsmooth.crossing.counting import first_passage_shift
 from nonsmooth.errors import SceneError
-from nonsmooth.paths import schemes
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -28,7 +28,7 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
             f"no path crosses {threshold} sqrt(p) by {horizon} p at p = {p}; "
             "lower crossing.threshold or raise crossing.horizon"
         )
-    factor = 1 / (1 - 2 ** -schemes.scheme(scene, "strang").weak_order(scene))
+    factor = 1 / (1 - 2 ** -registry.scheme(scene, "strang").weak_order(scene))
     mean = total / count
     return artifact.dataset(
         "Bias of the time step in the first-passage times",

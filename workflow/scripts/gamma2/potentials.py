@@ -8,8 +8,8 @@ import numpy as np
 from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import by_formulas
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.sampled_gamma2 import gamma2_bias, slopes
-from nonsmooth.statistics.variance import asymptotic_variance
 from reproduction import artifact
 from reproduction.jobs import produce
 

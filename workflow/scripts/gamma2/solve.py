@@ -1,7 +1,7 @@
 """gamma^2 of one scene without Monte Carlo."""
 
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.variance import asymptotic_variance
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from reproduction import artifact
 from reproduction.jobs import produce
 

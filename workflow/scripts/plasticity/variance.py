@@ -3,7 +3,7 @@
 from functools import partial
 
 from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
-from nonsmooth.statistics.variance import asymptotic_variance
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from reproduction import artifact
 from reproduction.jobs import produce
 from reproduction.plasticity import yielding_oscillator

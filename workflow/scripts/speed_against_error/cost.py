@@ -11,7 +11,7 @@ from nonsmooth.line import eigenfunctions, finite_differences
 from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.variance import asymptotic_variance
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from reproduction.jobs import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 

@@ -5,8 +5,8 @@ from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.sampled_gamma2 import slopes
-from nonsmooth.statistics.variance import asymptotic_variance
 from reproduction.jobs import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 

@@ -5,11 +5,11 @@ from contextlib import ExitStack
 from itertools import product
 from pathlib import Path
 
-from nonsmooth.paths import schemes
 from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import moments
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.variance import variance
 from reproduction.jobs import produce
@@ -65,7 +65,7 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
             exact = variance(scene, [horizon])
             references[panel] = tuple(float(exact[name][0]) / horizon for name in ("v", "v_error"))
             for (name, (scheme, control)), step, count in product(methods.items(), steps, paths):
-                if not step < schemes.scheme(scene, scheme).longest_step(scene):
+                if not step < registry.scheme(scene, scheme).longest_step(scene):
                     continue
                 run = timed(sampled, scene, horizon, step, count, scheme, control)
                 cases.append(Case(panel, name, step, run))

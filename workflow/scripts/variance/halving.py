@@ -2,10 +2,11 @@
 
 from functools import partial
 
-from nonsmooth.paths import schemes, time_grids
+from nonsmooth.paths import time_grids
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.moments import step_bias
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.jobs import produce
@@ -23,7 +24,7 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
     scene = Scene(**scene)
     tau = time_grids.logarithmic(first_time, horizon, points)
     change, _ = coupled(scene, tau, Sampling(step, paths, (seed, "halving"), threads=threads))
-    bias, error = step_bias(change, schemes.scheme(scene, "strang").weak_order(scene))
+    bias, error = step_bias(change, registry.scheme(scene, "strang").weak_order(scene))
     return artifact.dataset(
         "Bias of the time step in the variance of the integrated observable",
         f"steps {step} and {step / 2} on the same paths of {scene}",

@@ -2,7 +2,8 @@
 
 from nonsmooth.paths import time_grids
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.variance import asymptotic_variance, variance
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
+from nonsmooth.statistics.variance import variance
 from reproduction import artifact
 from reproduction.jobs import produce
 

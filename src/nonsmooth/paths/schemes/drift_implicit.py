@@ -12,7 +12,9 @@ import numpy as np
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.panel import GAIN, Y, observe
 from nonsmooth.paths.kernels.vector_math import fma, like, minimum
+from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes import symbols
+from nonsmooth.scenes.scene import Scene
 
 
 class DriftImplicit(NamedTuple):
@@ -31,7 +33,7 @@ class DriftImplicit(NamedTuple):
     shift: float
 
 
-def handles(scene):
+def handles(scene: Scene) -> bool:
     """Only the velocity under dry friction, with white noise and g = y."""
     return (
         scene.state == ("y",)
@@ -42,7 +44,7 @@ def handles(scene):
 
 
 @lru_cache(maxsize=1024)
-def coefficients(scene, step, precision="float32"):
+def coefficients(scene: Scene, step: float, precision: str = "float32") -> DriftImplicit:
     """Return the coefficients of a scene's scheme; see `strang.coefficients`."""
     number = np.dtype(precision).type
     knot, inner, _ = scene.mechanics.penalty.at(scene.n)
@@ -77,3 +79,15 @@ def kick(s, data, normal, lanes):
         data[Y, i] = after
         data[GAIN, i] = half * (before + after)
     observe(data, lanes)
+
+
+DRIFT_IMPLICIT = Scheme(
+    name="drift_implicit",
+    kind=DriftImplicit,
+    coefficients=coefficients,
+    flow=flow,
+    kick=kick,
+    smooth_order=1.0,
+    kink_order=1.0,
+    handles=handles,
+)

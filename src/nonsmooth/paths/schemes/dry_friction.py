@@ -18,6 +18,8 @@ from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.panel import GAIN, Y, observe
 from nonsmooth.paths.kernels.vector_math import fma, like, minimum, where
 from nonsmooth.paths.schemes import drift_implicit
+from nonsmooth.paths.schemes.scheme import Scheme
+from nonsmooth.scenes.scene import Scene
 
 
 class DryFriction(NamedTuple):
@@ -31,13 +33,13 @@ class DryFriction(NamedTuple):
     variance: float
 
 
-def handles(scene):
+def handles(scene: Scene) -> bool:
     """Only the velocity under dry friction at n = inf, with white noise and g = y."""
     return math.isinf(scene.n) and drift_implicit.handles(scene)
 
 
 @lru_cache(maxsize=1024)
-def coefficients(scene, step, precision="float32"):
+def coefficients(scene: Scene, step: float, precision: str = "float32") -> DryFriction:
     """Return the coefficients of a scene's scheme; see `strang.coefficients`."""
     number = np.dtype(precision).type
     variance = scene.noise.sigma**2 * step
@@ -75,3 +77,16 @@ def kick(s, data, normal, lanes):
         data[Y, i] = after
         data[GAIN, i] = half * (before + after)
     observe(data, lanes)
+
+
+DRY_FRICTION = Scheme(
+    name="dry_friction",
+    kind=DryFriction,
+    coefficients=coefficients,
+    flow=flow,
+    kick=kick,
+    smooth_order=2.0,
+    kink_order=2.0,
+    handles=handles,
+    shares_noise=False,  # The sign and the minimum of a step are not those of its halves.
+)

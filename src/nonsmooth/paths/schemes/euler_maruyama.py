@@ -11,7 +11,9 @@ from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
 from nonsmooth.paths.kernels.panel import GAIN, WIDTH, WORK, ZETA, observe
 from nonsmooth.paths.kernels.vector_math import fma, like
+from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes import symbols
+from nonsmooth.scenes.scene import Scene
 
 
 class EulerMaruyama(NamedTuple):
@@ -27,7 +29,7 @@ class EulerMaruyama(NamedTuple):
 
 
 @lru_cache(maxsize=1024)
-def coefficients(scene, step, precision="float32"):
+def coefficients(scene: Scene, step: float, precision: str = "float32") -> EulerMaruyama:
     """Return the coefficients of a scene's scheme; see `strang.coefficients`."""
     number = np.dtype(precision).type
     drift = scene.numerical_drift()
@@ -48,7 +50,12 @@ def coefficients(scene, step, precision="float32"):
     )
 
 
-def longest_step(scene):
+def handles(scene: Scene) -> bool:
+    """Only a finite n: the drift must be a function."""
+    return math.isfinite(scene.n)
+
+
+def longest_step(scene: Scene) -> float:
     """Step up to which the linear equation beyond or within the knot, whichever is stiffer, decays.
 
     |1 + h lambda| < 1 for every eigenvalue lambda of the drift's Jacobian.
@@ -92,3 +99,16 @@ def kick(s, data, normal, lanes):
         data[ZETA + s.driven, i] = fma(s.factor[0], data[normal, i], data[ZETA + s.driven, i])
     _gain(s, data, lanes)
     observe(data, lanes)
+
+
+EULER_MARUYAMA = Scheme(
+    name="euler_maruyama",
+    kind=EulerMaruyama,
+    coefficients=coefficients,
+    flow=flow,
+    kick=kick,
+    smooth_order=1.0,
+    kink_order=1.0,
+    longest_step=longest_step,
+    handles=handles,
+)

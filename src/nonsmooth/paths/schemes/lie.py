@@ -14,7 +14,9 @@ from nonsmooth.paths.kernels import exact_flows
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.panel import GAIN, Y, observe
 from nonsmooth.paths.kernels.vector_math import fma, like
-from nonsmooth.paths.schemes import strang
+from nonsmooth.paths.schemes import drift_implicit, strang
+from nonsmooth.paths.schemes.scheme import Scheme
+from nonsmooth.scenes.scene import Scene
 
 
 class Lie(NamedTuple):
@@ -29,7 +31,7 @@ class Lie(NamedTuple):
 
 
 @lru_cache(maxsize=1024)
-def coefficients(scene, step, precision="float32"):
+def coefficients(scene: Scene, step: float, precision: str = "float32") -> Lie:
     """Return the coefficients of a scene's scheme; see `strang.coefficients`."""
     number = np.dtype(precision).type
     matrix = np.array([[-scene.damping]])
@@ -61,3 +63,15 @@ def kick(s, data, normal, lanes):
         data[Y, i] = after
         data[GAIN, i] = half * (before + after)
     observe(data, lanes)
+
+
+LIE = Scheme(
+    name="lie",
+    kind=Lie,
+    coefficients=coefficients,
+    flow=flow,
+    kick=kick,
+    smooth_order=2.0,  # Without friction the step is exact, and int g by the trapezoidal rule.
+    kink_order=1.0,
+    handles=drift_implicit.handles,
+)

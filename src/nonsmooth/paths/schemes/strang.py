@@ -27,6 +27,7 @@ import numpy as np
 import scipy
 import sympy
 
+from nonsmooth.paths import tuning
 from nonsmooth.paths.control_variate import DEGREE
 from nonsmooth.paths.kernels import exact_flows
 from nonsmooth.paths.kernels.compilation import inlined
@@ -47,9 +48,11 @@ from nonsmooth.paths.kernels.panel import (
     observe,
 )
 from nonsmooth.paths.kernels.vector_math import fma, larger, like, maximum, minimum
+from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import ABSOLUTE_VALUE, BARRIER
+from nonsmooth.scenes.scene import Scene
 
 # kernels compare integers, not names
 _PLASTIC, _FRICTION, _SPRING = 0, 1, 2  # what the penalty force is
@@ -95,7 +98,7 @@ class Strang(NamedTuple):
 
 
 @lru_cache(maxsize=1024)
-def coefficients(scene, step, precision="float32"):
+def coefficients(scene: Scene, step: float, precision: str = "float32") -> Strang:
     """Return the coefficients of a scene's splitting.
 
     Parameters
@@ -155,7 +158,7 @@ def coefficients(scene, step, precision="float32"):
     )
 
 
-def handles(scene):
+def handles(scene: Scene) -> bool:
     """Whether there is an exact flow of the scene's penalty, and a step of its noise.
 
     At n = inf there is a flow for the penalties of the paper; at a finite n for all but springs
@@ -169,7 +172,7 @@ def handles(scene):
     return not model.in_potential or model.penalty.at(scene.n)[1] == 0
 
 
-def longest_step(scene):
+def longest_step(scene: Scene) -> float:
     """Step up to which what is not exact is stable: the kicks of U and a nonlinear noise's flow.
 
     h < 2 / sqrt(max U'') for the kicks, over the displacements that the walls or a few units of
@@ -178,18 +181,20 @@ def longest_step(scene):
     limit = math.inf
     if "x" in scene.state:
         wall = scene.mechanics.wall
-        reach = wall + 0.5 if math.isfinite(wall) else 5.0
+        reach = wall + tuning.STABLE_STEP.beyond if math.isfinite(wall) else tuning.STABLE_STEP.free
         stiffness = vectorised(sympy.diff(scene.potential_expression, symbols.x, 2), (symbols.x,))
         with np.errstate(all="ignore"):
-            largest = np.nanmax(stiffness(np.linspace(-reach, reach, 401)))
-        limit = 2 / math.sqrt(largest) if largest > 0 else limit
+            largest = np.nanmax(stiffness(np.linspace(-reach, reach, tuning.STABLE_STEP.points)))
+        limit = tuning.STABLE_STEP.kick / math.sqrt(largest) if largest > 0 else limit
     drift = scene.noise.drift
     if drift and not _is_linear(drift):
         variables = tuple(drift)
         jacobian = sympy.Matrix(list(drift.values())).jacobian(variables)
-        place = np.meshgrid(*[np.linspace(-3, 3, 25)] * len(variables))
+        around = tuning.STABLE_STEP.noise
+        axis = np.linspace(-around, around, tuning.STABLE_STEP.noise_points)
+        place = np.meshgrid(*[axis] * len(variables))
         entries = [vectorised(entry, variables)(*place) for entry in jacobian]
-        limit = min(limit, 5.6 / np.max(np.linalg.norm(entries, axis=0)))
+        limit = min(limit, tuning.STABLE_STEP.runge_kutta / np.max(np.linalg.norm(entries, axis=0)))
     return limit
 
 
@@ -423,3 +428,16 @@ def _accelerate(s, data, t, lanes):
     else:
         for i in range(lanes):
             data[Y, i] = exact_flows.relax(data[Y, i], t, data[WORK, i], s.rate)
+
+
+STRANG = Scheme(
+    name="strang",
+    kind=Strang,
+    coefficients=coefficients,
+    flow=flow,
+    kick=kick,
+    smooth_order=2.0,
+    kink_order=1.5,
+    longest_step=longest_step,
+    handles=handles,
+)

@@ -1,0 +1,296 @@
+"""Crossing probabilities by Monte Carlo to a tolerance, which decides on paths and time step."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from nonsmooth.checks import require_count, require_positive
+from nonsmooth.crossing import tuning
+from nonsmooth.crossing.counting import (
+    bias_of_counts,
+    crossing_estimate,
+    first_passage_counts,
+    proportion,
+)
+from nonsmooth.errors import ToleranceError
+from nonsmooth.paths.ensembles import coupled
+from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
+from nonsmooth.paths.moments import step_bias, variance_of_fine
+from nonsmooth.paths.resolution import (
+    coarse_step,
+    refined_step,
+    require_possible,
+    require_resolved,
+)
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
+from nonsmooth.paths.tuning import MONTE_CARLO
+from nonsmooth.scenes.scene import Scene
+
+
+def least_steps(scene: Scene, time: float, tol: float) -> tuple[float, float]:
+    """Count the steps that `sampled_crossing` takes at least.
+
+    Parameters
+    ----------
+    scene : Scene
+    time : float
+        Of a path, "1".
+    tol : float
+
+    Returns
+    -------
+    pilot, all : float
+        Of the pilot, and of the fewest paths that meet the tolerance.
+    """
+    steps = time / coarse_step(scene)
+    counting = tuning.COUNTING
+    pilot = 3 * min(MONTE_CARLO.pilot_paths, counting.pilot / tol)
+    return pilot * steps, counting.skew / tol * steps
+
+
+def sampled_crossing(
+    scene: Scene,
+    threshold: tuple[float, float],
+    horizons: np.ndarray,
+    p: float,
+    seed: int | tuple,
+    threads: int | None,
+    tol: float = MONTE_CARLO.tolerance,
+    step: float | None = None,
+    paths: int | None = None,
+    precision: str = "float32",
+    most: float = MONTE_CARLO.most_steps,
+) -> tuple[dict, dict]:
+    """Count paths; the step and the number of paths follow from `tol` unless given.
+
+    A pilot runs paths with a coarse step and its half. Where hardly any of them cross, or nearly
+    all, it is the answer. Otherwise there are as many paths as confidence limits show to be needed,
+    with a step whose bias, extrapolated by the weak order, fits in. The bias is measured anew, and
+    the step is refined if it does not fit.
+
+    Parameters
+    ----------
+    scene, threshold, horizons, p, seed, threads, tol, step, paths, precision
+        As of `crossing_probability`, the threshold as a pair.
+    most : float
+        Steps of all paths, beyond which it is not tried.
+
+    Returns
+    -------
+    values : dict
+        As of `crossing_estimate`, and `step_bias` with its error.
+    attributes : dict
+        `step`, `paths`.
+
+    Raises
+    ------
+    SceneError
+        If a parameter is out of range, or a path diverges.
+    ToleranceError
+        If `tol` takes too many steps, or a step is so long that halving it does not measure its
+        bias.
+    """
+    if step is not None:
+        require_positive("step", step)
+    if paths is not None:
+        require_count("paths", paths)
+    request = _Request(
+        scene, threshold, horizons, p, seed, threads, tol, step, paths, precision, most
+    )
+    if step is not None and paths is not None:
+        return request.answer(_Plan(step, paths, MONTE_CARLO.pilot_paths))
+    pilot = request.pilot()
+    if step is None and paths is None and (found := request.answer_of_pilot(pilot)):
+        return found
+    return request.answer(request.plan(pilot))
+
+
+@dataclass(frozen=True)
+class _Halving:
+    """Paths with a step and with half of it on the same noise, see `coupled`."""
+
+    step: float
+    paths: int
+    change: np.ndarray
+    passage: np.ndarray
+
+    def crossed(self, times):
+        """Count the paths that have crossed with half the step."""
+        return np.sum(self.passage[0][:, None] <= times, axis=0)
+
+    def require_resolved(self, order):
+        """Refuse a step at which halving does not measure the bias."""
+        bias, error = step_bias(self.change, order)
+        require_resolved(self.step, variance_of_fine(self.change)[-1], bias[-1], error[-1])
+
+    def is_resolved(self, order):
+        """Whether halving the step measures its bias."""
+        try:
+            self.require_resolved(order)
+        except ToleranceError:
+            return False
+        return True
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """Step and number of paths to begin with.
+
+    At least `fewest` paths measure the bias of the step. `halving` has measured it already, at
+    some step, if a pilot has run.
+    """
+
+    step: float
+    paths: int
+    fewest: int
+    halving: _Halving | None = None
+
+
+@dataclass(frozen=True)
+class _Request:
+    """What `sampled_crossing` is asked for; a step or paths that are None are to be chosen."""
+
+    scene: Scene
+    threshold: tuple[float, float]
+    horizons: np.ndarray
+    p: float
+    seed: int | tuple
+    threads: int | None
+    tol: float
+    step: float | None
+    paths: int | None
+    precision: str
+    most: float
+
+    @property
+    def times(self):
+        return self.p * self.horizons
+
+    @property
+    def order(self):
+        return registry.scheme(self.scene).weak_order(self.scene)
+
+    @property
+    def allowed_bias(self):
+        return (1 - MONTE_CARLO.spread_share) * self.tol
+
+    def pilot(self):
+        """Run few paths with a coarse step, unless the step or the paths are given."""
+        fewest = self.paths
+        if fewest is None:
+            fewest = math.ceil(tuning.COUNTING.pilot / self.tol)
+        step = coarse_step(self.scene) if self.step is None else self.step
+        return self.halved(step, min(MONTE_CARLO.pilot_paths, fewest), "pilot")
+
+    def answer_of_pilot(self, pilot):
+        """Values with half the step of the pilot, None if they are not accurate enough."""
+        bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
+        crossed, half = pilot.crossed(self.times), 2**-self.order
+        off = _distance(crossed, pilot.paths) + half * np.max(np.abs(bias) + error)
+        if pilot.is_resolved(self.order) and off <= self.tol:
+            return _outcome(crossed, pilot.paths, pilot.step / 2, half * bias, half * error)
+        return None
+
+    def plan(self, pilot):
+        """Choose from a pilot what is not given: the step, or the number of paths, or both."""
+        paths, step = self.paths, self.step
+        crossed, fewest = pilot.crossed(self.times), pilot.paths
+        if self.paths is None:
+            paths = _paths_wanted(crossed, fewest, self.tol)
+            self.require_possible(paths, pilot.step, crossed, fewest)
+        if self.step is None:
+            bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
+            worst = np.max(np.abs(bias) + error)
+            more = paths // MONTE_CARLO.halved
+            if worst > self.allowed_bias and more > fewest:
+                pilot = self.halved(pilot.step, more, "pilot")
+                own = bias_of_counts(self.scene, self.times, pilot.passage)
+                worst = np.max(np.abs(np.array(own)).sum(axis=0))
+            step = refined_step(pilot.step, worst, self.allowed_bias, self.order)
+            if self.paths is None:
+                self.require_possible(paths, step, crossed, fewest)
+        return _Plan(step, paths, fewest, pilot)
+
+    def answer(self, plan):
+        """Count paths, and refine the step until its bias fits in."""
+        step, paths = plan.step, plan.paths
+        for _ in range(tuning.COUNTING.attempts):
+            crossed, paths = self.counted(step, paths)
+            if self.paths is None and plan.halving.step == step:
+                check = plan.halving
+            else:
+                fewer = min(paths, max(plan.fewest, paths // MONTE_CARLO.halved))
+                check = self.halved(step, fewer, "halving")
+            check.require_resolved(self.order)
+            bias, error = bias_of_counts(self.scene, self.times, check.passage)
+            known = np.max(np.abs(bias) - MONTE_CARLO.sigmas * error)
+            if self.step is not None or known <= self.allowed_bias:
+                return _outcome(crossed, paths, step, bias, error)
+            step = refined_step(step, np.max(np.abs(bias) + error), self.allowed_bias, self.order)
+        raise ToleranceError(
+            f"W = {crossed[-1] / paths:.3g} has a bias of {np.max(np.abs(bias)):.1e} by the step "
+            f"{check.step:.1e}, which does not fall by the weak order; choose a step or loosen tol"
+        )
+
+    def counted(self, step, wanted):
+        """Numbers of crossed paths, and of as many paths as turn out to be wanted."""
+        crossed, done = np.zeros(len(self.horizons), dtype=int), 0
+        while done < wanted:
+            more = Sampling(
+                step, wanted - done, self.seed, done, self.threads, precision=self.precision
+            )
+            counts = first_passage_counts(self.scene, self.threshold, self.horizons, self.p, more)
+            crossed = crossed + np.cumsum(counts)
+            done = wanted
+            allowed = MONTE_CARLO.spread_share * self.tol
+            if self.paths is None and _distance(crossed, done) > allowed:
+                wanted = max(_paths_wanted(crossed, done, self.tol), done + BLOCK)
+                self.require_possible(wanted, step, crossed, done)
+        return crossed, done
+
+    def halved(self, step, paths, label):
+        """Run paths with a step and its half, on a noise of their own."""
+        own = labelled(self.seed, label)
+        sampling = Sampling(step, paths, own, threads=self.threads, precision=self.precision)
+        levels = np.sqrt(self.p) * np.array(self.threshold)
+        return _Halving(step, paths, *coupled(self.scene, self.times, sampling, levels))
+
+    def require_possible(self, paths, step, crossed, count):
+        """Refuse what takes too many steps; the message has what `count` paths tell."""
+        W, error = crossed[-1] / count, MONTE_CARLO.sigmas / 2 / np.sqrt(count)
+        told = f"W = {W:.3g} has an error of {error:.1g}"
+        work = tuning.COUNTING.checked * paths
+        require_possible(work, self.times[-1] / step, told, self.tol, self.most)
+
+
+def _outcome(crossed, paths, step, bias, error):
+    values = crossing_estimate(crossed, paths) | {"step_bias": bias, "step_bias_error": error}
+    return values, {"step": step, "paths": paths}
+
+
+def _distance(crossed, paths):
+    """Distance of the farthest confidence limit of the probabilities."""
+    value, low, high = proportion(crossed, paths, tuning.COUNTING.confidence)
+    return np.max(np.maximum(high - value, value - low))
+
+
+def _paths_wanted(crossed, paths, tol):
+    """Count paths, in whole blocks, whose limits should be as near as the tolerance asks for.
+
+    Jeffreys' limits are three standard deviations and `skew` |1 - 2 W| counts away. W is taken a
+    standard deviation nearer to 1/2, if that does not take more than `enlarge` times the paths.
+    """
+    share, counting = MONTE_CARLO.spread_share * tol, tuning.COUNTING
+
+    def enough(W):
+        spread = MONTE_CARLO.sigmas * np.sqrt(W * (1 - W))
+        skew = counting.skew * np.abs(1 - 2 * W)
+        return ((spread + np.sqrt(spread**2 + 4 * skew * share)) / (2 * share)) ** 2
+
+    W = crossed / paths
+    error = crossing_estimate(crossed, paths)["probability_error"]
+    careful = enough(np.where(W < 0.5, np.minimum(W + error, 0.5), np.maximum(W - error, 0.5)))
+    wanted = np.max(np.maximum(enough(W), np.minimum(careful, counting.enlarge * paths)))
+    return BLOCK * math.ceil(wanted / BLOCK)

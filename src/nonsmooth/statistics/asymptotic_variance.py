@@ -1,0 +1,142 @@
+"""The asymptotic variance gamma^2 of Theorem thm3, by the method that a tolerance calls for."""
+
+import time
+
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.estimate import Estimate
+from nonsmooth.line import quadrature
+from nonsmooth.line.dry_friction import friction_variance
+from nonsmooth.paths.tuning import MONTE_CARLO
+from nonsmooth.scenes import symbols
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics import gamma2_on_grids, tuning
+from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2, sampled_mean
+
+
+def asymptotic_variance(
+    scene: Scene,
+    tol: float | None = None,
+    method: str | None = None,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+) -> Estimate:
+    """gamma_g^2 of Theorem thm3: the rate at which the variance of int_0^t g grows with t.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float, optional
+        Requested relative error; unless given, 1e-10, 1e-6, 2e-4, 1e-2 for one to four state
+        variables, the last by Monte Carlo, as everywhere by that method; 3e-3 if the deterministic
+        one is asked for with four.
+    method : {"deterministic", "monte_carlo"}, optional
+        Unless given, the one that should be the faster for `tol` and, if that fails and `tol` is
+        a percent or more, the other.
+    seed, threads
+        Of Monte Carlo: int or tuple; all cores unless given.
+
+    Returns
+    -------
+    Estimate
+        Deterministic for the state y with white noise by closed form (dry friction, g = y) or
+        quadrature, in every other scene by spectral elements. By Monte Carlo the error is the
+        bias of the time step and the standard error together; `tol` bounds the bias and three
+        standard errors.
+
+    Raises
+    ------
+    SceneError
+        If there is no such method, or g is a function of the noise alone.
+    ToleranceError
+        If `tol` cannot be met; the message has the best value and its error.
+    """
+    began = time.perf_counter()
+    if method not in (None, "deterministic", "monte_carlo"):
+        raise SceneError(
+            f"gamma^2 has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
+        )
+    failed = []
+    for name in _fastest_first(scene, tol) if method is None else [method]:
+        try:
+            if name == "monte_carlo":
+                accuracy = MONTE_CARLO.tolerance if tol is None else tol
+                value, error = sampled_gamma2(scene, accuracy, seed, threads)
+                solver = "Monte Carlo"
+            else:
+                value, error, solver = _deterministic(scene, tol)
+            return Estimate(value, error, solver, time.perf_counter() - began)
+        except ToleranceError as refused:
+            failed.append(refused)
+    raise failed[0]
+
+
+def _fastest_first(scene, tol):
+    if "y" not in scene.state:
+        return ["monte_carlo"]
+    many = scene.dimension
+    tol = tuning.GAMMA2.tolerance[many - 1] if tol is None else tol
+    if tol >= tuning.GAMMA2.faster_sampled[many - 1]:
+        return ["monte_carlo", "deterministic"]
+    return ["deterministic", "monte_carlo"] if tol >= MONTE_CARLO.tolerance else ["deterministic"]
+
+
+def _deterministic(scene, tol):
+    if "y" not in scene.state:
+        raise SceneError(
+            f"g = '{scene.observable}' is a function of the noise alone, which the solvers do not "
+            "take without the velocity; use method='monte_carlo'"
+        )
+    tol = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
+    if not scene.is_line:
+        return *gamma2_on_grids.gamma2(scene, tol), "spectral elements"
+    if (
+        scene.mechanics.is_dry_friction
+        and scene.observable_expression == symbols.y
+        and scene.noise.sigma == 1.0
+    ):
+        value, error = friction_variance(scene.n, scene.damping)
+        if error <= tol * value:  # for a tiny C_b the closed form loses its digits
+            return value, error, "closed form"
+    return *quadrature.asymptotic_variance(scene, tol), "quadrature"
+
+
+def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = None) -> Estimate:
+    """gamma^2 as accurately as formulas for crossing probabilities need it.
+
+    Parameters
+    ----------
+    scene : Scene
+    seed, threads
+        Of Monte Carlo.
+
+    Returns
+    -------
+    Estimate
+    """
+    # From three variables on, sampling is faster than solving, and a percent is enough for W_star.
+    accuracy, way = {1: (None, "deterministic"), 2: (2e-3, "deterministic")}.get(
+        scene.dimension, (None, "monte_carlo")
+    )
+    return asymptotic_variance(scene, accuracy, way, seed, threads)
+
+
+def stationary_mean(
+    scene: Scene, seed: int | tuple = 0, threads: int | None = None
+) -> tuple[float, float]:
+    """Stationary mean of g and its error: exact by symmetry or quadrature, else by Monte Carlo.
+
+    Parameters
+    ----------
+    scene : Scene
+    seed, threads
+        Of Monte Carlo.
+
+    Returns
+    -------
+    value, error : float
+    """
+    if scene.is_odd():
+        return 0.0, 0.0
+    if scene.is_line:
+        return quadrature.mean(scene)
+    return sampled_mean(scene, seed, threads)

@@ -1,0 +1,117 @@
+"""Mean and variance of int_0^tau g by Monte Carlo, for every scene."""
+
+import math
+
+import numpy as np
+
+from nonsmooth.checks import require_increasing, require_positive
+from nonsmooth.errors import ToleranceError
+from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.paths.resolution import first_step, paths_for, refined_step, require_possible
+from nonsmooth.paths.schemes import registry
+from nonsmooth.paths.simulation import simulate
+from nonsmooth.paths.tuning import MONTE_CARLO
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics import tuning
+from nonsmooth.statistics.asymptotic_variance import stationary_mean
+
+
+def sampled_moments(
+    scene: Scene,
+    times: np.ndarray,
+    tol: float,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+    most: float = MONTE_CARLO.most_steps,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Simulate w and v of `statistics.variance`; pilots choose the sizes.
+
+    Parameters
+    ----------
+    scene : Scene
+    times : numpy.ndarray, shape (t,)
+        Increasing and positive.
+    tol : float
+        Of v(tau)/tau, absolute.
+    seed : int or tuple
+    threads : int, optional
+    most : float
+        Steps of all paths together, beyond which it is not tried.
+
+    Returns
+    -------
+    values, errors : numpy.ndarray, shape (2, t)
+        Of w and of v; the errors are the bias of the step and the standard error together.
+
+    Raises
+    ------
+    SceneError
+        If the times or the tolerance are out of range.
+    ToleranceError
+        If `tol` cannot be met; the message has the best value and its error.
+    """
+    require_increasing("times of the variance", times)
+    require_positive("tol", tol)
+    paths, step = MONTE_CARLO.pilot_paths, first_step(scene, times)
+    order = registry.scheme(scene).weak_order(scene)
+    for attempt in range(MONTE_CARLO.attempts):
+        run = simulate(
+            scene,
+            times[-1],
+            step=step,
+            paths=paths,
+            seed=labelled(seed, attempt),
+            times=times,
+            threads=threads,
+        )
+        own, bias, spread = (
+            np.abs(run[f"variance_{part}"].values) / times
+            for part in ("error", "bias", "bias_error")
+        )
+        error = np.max(bias + MONTE_CARLO.sigmas * np.hypot(own, spread))
+        size = max(float(run["variance"][-1]) / times[-1], np.finfo(float).tiny)
+        rare = own[-1] / size / tuning.VARIANCE.resting
+        if error <= tol and rare <= 1:
+            break
+        deviation = math.sqrt(paths) * np.max(own)
+        paths = max(
+            paths,
+            paths_for(deviation, tol),
+            math.ceil(paths * min(rare, tuning.VARIANCE.more) ** 2),
+        )
+        step = refined_step(step, np.max(bias + spread), MONTE_CARLO.bias_aim * tol, order)
+        require_possible(
+            paths,
+            times[-1] / step,
+            f"v(tau)/tau = {float(run['variance'][-1]) / times[-1]:.3g} at tau = {times[-1]:g} has "
+            f"an error of {error:.1g}",
+            tol,
+            most,
+        )
+    if rare > 1:
+        raise ToleranceError(
+            f"v(tau)/tau = {size:.3g} at tau = {times[-1]:g} rests on the few of {paths} paths "
+            "that have moved; choose a longer time"
+        )
+    mean, uncertain = stationary_mean(scene, labelled(seed, "stationary"), threads)
+    w = run["mean"].values - mean * times
+    w_error = np.abs(run["mean_bias"]) + np.hypot(run["mean_error"], run["mean_bias_error"])
+    v, v_error = run["variance"].values, times * (bias + np.hypot(own, spread))
+    require_accuracy(times, v, times * (bias + MONTE_CARLO.sigmas * np.hypot(own, spread)), tol)
+    return np.array([w, v]), np.array([w_error.values + uncertain * times, v_error])
+
+
+def require_accuracy(times: np.ndarray, v: np.ndarray, error: np.ndarray, tol: float) -> None:
+    """Refuse a v(tau) whose error, divided by tau, is above the tolerance.
+
+    Raises
+    ------
+    ToleranceError
+    """
+    rate, rate_error = (part / np.where(times > 0, times, 1.0) for part in (v, error))
+    worst = int(np.argmax(rate_error))
+    if not rate_error[worst] <= tol:
+        raise ToleranceError(
+            f"v(tau)/tau = {rate[worst]:.10g} at tau = {times[worst]:g} has an error of "
+            f"{rate_error[worst]:.1e}, above tol = {tol:g}; loosen tol"
+        )
