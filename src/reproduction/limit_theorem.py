@@ -5,6 +5,8 @@ a standard normal variable and max_{t <= 1} |Xi_p(t)|/gamma to the maximum of |W
 1 - W_star (eq. defFexplicit).
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ndtr, ndtri
@@ -46,17 +48,17 @@ def scaled_integrals(scene: Scene, p: ArrayLike, sampling: Sampling) -> np.ndarr
     return np.swapaxes(np.concatenate(kept, axis=2), 0, 1) / np.sqrt(p)[:, None]
 
 
-def normal_law(value):
+def normal_law(value: ArrayLike) -> np.ndarray:
     """Distribution function of W(1)."""
     return ndtr(value)
 
 
-def maximum_law(value):
+def maximum_law(value: ArrayLike) -> np.ndarray:
     """Distribution function of max_{t <= 1} |W(t)| at positive values, 1 - W_star."""
     return brownian_survival(value, 1.0)
 
 
-def kolmogorov_distance(sample, law):
+def kolmogorov_distance(sample: ArrayLike, law: Callable) -> float:
     """Largest distance between the distribution function of a sample and a continuous law.
 
     Parameters
@@ -74,7 +76,7 @@ def kolmogorov_distance(sample, law):
     return float(max(np.max(rank[1:] - below), np.max(below - rank[:-1])))
 
 
-def sampling_bound(count, probability):
+def sampling_bound(count: int, probability: float) -> float:
     """Bound that a sample's Kolmogorov distance to its own law exceeds by chance.
 
     That of Dvoretzky, Kiefer and Wolfowitz with Massart's constant (Ann. Probab. 18, 1990): it
@@ -95,7 +97,9 @@ def sampling_bound(count, probability):
     return float(np.sqrt(np.log(2 / probability) / (2 * count)))
 
 
-def distance_to_limit(sample, law, gamma2, gamma2_error):
+def distance_to_limit(
+    sample: np.ndarray, law: Callable, gamma2: float, gamma2_error: float
+) -> tuple[float, float]:
     """Kolmogorov distance of a sample, divided by gamma, to its limit.
 
     Parameters
@@ -105,7 +109,7 @@ def distance_to_limit(sample, law, gamma2, gamma2_error):
     law : callable
         `normal_law` or `maximum_law`.
     gamma2, gamma2_error : float
-        Growth rate of the variance and its standard error or error bound.
+        The asymptotic variance and its standard error or error bound.
 
     Returns
     -------
@@ -119,7 +123,7 @@ def distance_to_limit(sample, law, gamma2, gamma2_error):
     return distance, max(abs(less - distance), abs(more - distance))
 
 
-def error_bound(count, sensitivity, probability):
+def error_bound(count: int, sensitivity: ArrayLike, probability: float) -> np.ndarray:
     """Bound on the error of `distance_to_limit`, of the sample and of gamma^2 together.
 
     Parameters
@@ -136,14 +140,13 @@ def error_bound(count, sensitivity, probability):
     return sampling_bound(count, probability / 2) - ndtri(probability / 4) * np.asarray(sensitivity)
 
 
-def allowed_distance(p, distance, error):
+def allowed_distance(p: ArrayLike, distance: ArrayLike, error: ArrayLike) -> np.ndarray:
     """Extrapolate an upper bound of the distance at the largest p from the smaller ones.
 
-    A distance of order p^(-1/2) is p^(-1/2) (c + c'/p^(1/2) + ...). The bound holds wherever all
-    the errors do and c(p) = p^(1/2) times the distance is, at the largest p, at most the larger
-    of what it was at one of the smaller ones and of what the line in p^(-1/2) through the last
-    two of these gives: of c(p) that fall, that rise ever more slowly, or that follow the two
-    terms.
+    A distance of order p^(-1/2) is p^(-1/2) (c + c'/p^(1/2) + ...). Let c(p) be p^(1/2) times the
+    distance. The bound takes the larger of two values for c at the largest p: the largest c at the
+    smaller ones, and what the straight line in p^(-1/2) through the last two of these gives. It
+    holds if the errors do and c(p) falls, rises ever more slowly, or follows the two terms above.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ what the steps change in both cancels in the difference.
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import stats
 
 from nonsmooth.errors import ToleranceError
@@ -20,14 +21,14 @@ from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
-_LEVEL = 0.95
+_LEVEL = 0.95  # of the interval
 
 
-def contact_time(scene):
+def contact_time(scene: Scene) -> float:
     """Time scale of the penalty, which steps must resolve.
 
-    That of an elastic contact, n^(-1/2); of a relaxation, 1/n; of a Brownian velocity within
-    |y| < 1/n, n^(-2).
+    An elastic contact takes n^(-1/2), a relaxation 1/n. A Brownian velocity spends n^(-2) within
+    |y| < 1/n.
     """
     if scene.mechanics.in_potential:
         return scene.n**-0.5
@@ -104,7 +105,7 @@ def gamma2_difference(scene: Scene) -> tuple[float, float]:
     return value - limit, error + limit_error
 
 
-def slope(n, value, error):
+def slope(n: ArrayLike, value: ArrayLike, error: ArrayLike) -> tuple[float, float]:
     """Fit log |value| = c + slope log n by weighted least squares.
 
     Parameters
@@ -134,7 +135,7 @@ def slope(n, value, error):
         )
     x, y = np.log(n[kept]), np.log(value[kept])
     weight = (value / np.maximum(error, 1e-12 * value))[kept] ** 2
-    # none counts more than ten times the others together can
+    # No relative error counts as less than a tenth of the typical one.
     weight = np.minimum(weight, 100 * np.median(weight))
     centre = np.average(x, weights=weight)
     spread = np.sum(weight * (x - centre) ** 2)

@@ -17,8 +17,9 @@ from nonsmooth.line import eigenfunctions, potential
 from nonsmooth.paths import tuning
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.scene import Scene
 
-DEGREE = 12  # of the polynomial that kernels evaluate; what it misses is below 5 % of u'
+DEGREE = 12  # of the polynomial that kernels evaluate; it is off by less than 5 % of u'
 
 
 @dataclass(frozen=True)
@@ -37,11 +38,11 @@ class PoissonSlope:
     values: np.ndarray
     density: np.ndarray
 
-    def polynomial(self, spread):
+    def polynomial(self, spread: float) -> np.ndarray:
         """Fit u', averaged over a normal kick, by a polynomial in y / reach.
 
-        The average, and that of u'', are the projection on the first two Hermite polynomials of
-        what a kick does to u.
+        A kick changes u by a random amount. Its part that is linear in the kick has the averaged u'
+        as its coefficient, and its quadratic part the averaged u''.
 
         Parameters
         ----------
@@ -62,7 +63,7 @@ class PoissonSlope:
 
 
 @lru_cache(maxsize=64)
-def poisson_slope(scene):
+def poisson_slope(scene: Scene) -> PoissonSlope | None:
     """Tabulate u' of a one-dimensional scene with white noise.
 
     By (m u')' = -2/sigma^2 (g - E g) m, integrated from the nearer end.

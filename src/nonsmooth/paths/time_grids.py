@@ -1,11 +1,12 @@
-"""Time grids."""
+"""Output times, and the steps between them."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nonsmooth.paths import tuning
 
 
-def logarithmic(first, last, count):
+def logarithmic(first: float, last: float, count: int) -> np.ndarray:
     """Return times from `first` to `last`, nearly equidistant in the logarithm.
 
     They are multiples of a tenth of `first`, so that schemes with a constant step meet them;
@@ -20,7 +21,7 @@ def logarithmic(first, last, count):
     return np.round(multiples * unit, 12)
 
 
-def equal_steps(times, step):
+def equal_steps(times: ArrayLike, step: float) -> list[tuple[int, float]]:
     """Split [0, times[-1]] into runs of equal steps, none longer than `step`, ending at `times`.
 
     Before the first output time the steps are at most a sixteenth of it, so that early
@@ -37,5 +38,5 @@ def equal_steps(times, step):
     if not np.all(spans > 0):
         raise ValueError("output times must be positive and increase")
     counts = np.maximum(np.ceil(spans / longest - 1e-9).astype(int), 1)
-    # rounded, so that equal steps are the same number and share their coefficients
+    # Rounding makes equal steps the same number, so that they share their coefficients.
     return [(int(k), float(f"{span / k:.12g}")) for k, span in zip(counts, spans, strict=True)]

@@ -85,7 +85,7 @@ def march(s, panel, lanes, steps, lower, upper):
     for k in range(steps + 1):
         _flow(s, data, k == 0, k == steps, lanes)
         if k == steps:
-            observe(data, lanes)  # what the last flow has added
+            observe(data, lanes)  # what the last flow has added to int g
         else:
             if normal >= 2:
                 normals(words, data, lanes)
@@ -94,7 +94,7 @@ def march(s, panel, lanes, steps, lower, upper):
                 normal = 0
             _kick(s, data, normal, lanes)
             normal += s.normals
-        if lower != -upper:  # otherwise max |int g|, which every step has, is enough
+        if lower != -upper:  # For equal levels max |int g| is enough, which every step keeps.
             follow_extremes(data, lanes)
         if (k + 1) % FLUSH == 0 or k == steps:
             flush(data, total, lanes)
@@ -129,7 +129,7 @@ def march_pair(fine, coarse, panel, other, lanes, steps, lower, upper, began, pa
     _, joined, other_total = _of_known_shape(other)
     a, b, c, d = fine.transition
     e, f, g = fine.factor
-    for k in range(2 * steps + 1):  # fine ones
+    for k in range(2 * steps + 1):  # counts the fine steps
         odd = k % 2 == 1
         now = began + (k // 2) * float(coarse.step)
         _flow(fine, data, k == 0, k == 2 * steps, lanes)

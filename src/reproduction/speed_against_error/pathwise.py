@@ -8,6 +8,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.paths.kernels.compilation import kernel
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.schemes import registry, strang
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 
@@ -44,7 +45,7 @@ class BrownianPaths:
         If the noise is not white.
     """
 
-    def __init__(self, scene, horizon, doublings, paths, seed):
+    def __init__(self, scene: Scene, horizon: float, doublings: int, paths: int, seed: int) -> None:
         if scene.noise.kind != "white":
             raise SceneError("strong errors are measured for white noise; choose noise='white'")
         self.scene, self.horizon, self.doublings = scene, horizon, doublings
@@ -65,7 +66,7 @@ class BrownianPaths:
             self._known[level] = early + decay * early + late
         return self._known[level]
 
-    def follow(self, level):
+    def follow(self, level: int) -> tuple[np.ndarray, float]:
         """Return the velocity under friction, otherwise the displacement, and the seconds.
 
         Parameters
@@ -89,7 +90,7 @@ class BrownianPaths:
         )
         return kept, time.perf_counter() - began
 
-    def error(self, level):
+    def error(self, level: int) -> tuple[float, float]:
         """Return the root mean square over the paths of sup_t |X_h(t) - X(t)|, and the seconds.
 
         The supremum is over the ends of the steps; X has the finest step.

@@ -1,18 +1,20 @@
 """Work-precision diagrams: what methods take and how far they are from a reference.
 
-Everything is measured in one process, in rounds in which each case has its turn, so that a
-machine that slows down slows down all of them. A first round, which compiles, is not counted.
+Everything is measured in one process. Each case has its turn in each round, so that a machine that
+slows down slows down all of them. The first round, which compiles, is not counted.
 """
 
 import json
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from nonsmooth.errors import CheckError
 from reproduction import artifact
@@ -38,7 +40,7 @@ class Case:
     run: Callable
 
 
-def timed(function, *arguments, **options):
+def timed(function: Callable, *arguments: Any, **options: Any) -> Callable:
     """Turn a function of a seed into a `Case.run` by the clock.
 
     Parameters
@@ -55,12 +57,14 @@ def timed(function, *arguments, **options):
     return run
 
 
-def unseeded(function):
+def unseeded(function: Callable) -> Callable:
     """Adapt a deterministic function to `timed`."""
     return lambda *arguments, seed, **options: function(*arguments, **options)
 
 
-def measured(title, summary, cases, rounds, references=None):
+def measured(
+    title: str, summary: str, cases: list[Case], rounds: int, references: dict | None = None
+) -> xr.Dataset:
     """Run every case in rounds.
 
     Parameters
@@ -127,7 +131,7 @@ def _errors(cases, values, references):
 
 
 @contextmanager
-def peer(python, script):
+def peer(python: str | Path, script: str | Path) -> Iterator[Callable]:
     """Start a program that measures methods of its own in its own environment.
 
     It answers requests, one JSON object a line, with the value and the seconds.
@@ -161,7 +165,7 @@ def peer(python, script):
         process.stdin.close()
 
 
-def front(seconds, error):
+def front(seconds: np.ndarray, error: np.ndarray) -> list[int]:
     """Places of the cases that no other one beats in both, by increasing time."""
     kept, least = [], np.inf
     for k in np.lexsort((error, seconds)):
@@ -171,7 +175,7 @@ def front(seconds, error):
     return kept
 
 
-def exponent(size, cost):
+def exponent(size: np.ndarray, cost: np.ndarray) -> tuple[float, float]:
     """Slope of log cost against log size, by least squares, and its standard error."""
     (slope, _), covariance = np.polyfit(np.log(size), np.log(cost), 1, cov="unscaled")
     residual = np.log(cost) - np.polyval(np.polyfit(np.log(size), np.log(cost), 1), np.log(size))

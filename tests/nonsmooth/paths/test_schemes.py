@@ -1,6 +1,9 @@
 """Every scheme keeps the promises of the table: weak order, stability, energy."""
 
+import importlib
+from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +18,7 @@ from nonsmooth.paths import ensembles, moments
 from nonsmooth.paths.kernels.panel import DELTA, ROWS, STATE, WIDTH, X, Y, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.schemes.registry import SCHEMES, coefficients, scheme
 from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes import symbols
@@ -262,3 +266,20 @@ def test_requests_that_no_scheme_can_meet():
         scheme(KINKED, "dry_friction")
     assert scheme(LIMIT, "dry_friction") is SCHEMES["dry_friction"]
     assert scheme(KINKED) is SCHEMES["strang"]
+
+
+def test_scheme_of_the_manual(tmp_path, monkeypatch):
+    """The scheme of the how-to page runs, and its paths are those of the Euler-Maruyama scheme."""
+    page = Path("docs/how_to/add_a_scheme.md").read_text(encoding="utf-8")
+    (tmp_path / "explicit_scheme.py").write_text(page.split("```python\n")[1].split("```")[0])
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(registry, "SCHEMES", dict(SCHEMES))
+    importlib.import_module("explicit_scheme")
+    scene, sampling = ns.Scene("friction", n=10), Sampling(0.05, 100, 1, scheme="explicit")
+    found, expected = (
+        ensembles.paths_at(scene, [1.0, 2.0], replace(sampling, scheme=name))
+        for name in ("explicit", "euler_maruyama")
+    )
+    assert np.max(np.abs(found - expected)) < 1e-12
+    with pytest.raises(SceneError, match="unstable with step"):
+        ensembles.paths_at(scene, [1.0], replace(sampling, step=0.3))

@@ -1,1 +1,9 @@
-"""Compiled kernels."""
+"""Compiled building blocks of the simulation: loops over the paths of one block.
+
+- `panel`: the arrays that hold a block of paths, one path in each column
+- `random_numbers`: a stream of normal numbers for each path
+- `exact_flows`: exact flows of the piecewise linear parts of the equations of motion
+- `vector_math`: elementary functions that a loop over paths can vectorise
+- `compiled_formulas`: potentials and observables given as formulas
+- `compilation.kernel`, `compilation.inlined`: how all of these are compiled and cached
+"""

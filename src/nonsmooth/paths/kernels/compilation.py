@@ -1,10 +1,11 @@
 """How the numerical kernels are compiled: no fast-math, no GIL, cached by content.
 
-Numba's own cache notices a change of the file that holds a kernel, not of the files it calls
-into. The cache folder is therefore named after the content of the whole package.
+Numba's own cache notices a change of the file that holds a kernel, but not of the files that the
+kernel calls into. The cache folder is therefore named after the content of the whole library.
 """
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numba
@@ -14,9 +15,9 @@ _DIGEST = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(_PACKAGE.rglob(
 _CACHE = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
 
 
-def kernel(function, forceinline=False):
+def kernel(function: Callable, forceinline: bool = False) -> Callable:
     """Compile a function to machine code when it is first called."""
-    # the folder is read at decoration; other users of numba keep theirs
+    # Numba reads the folder here, at decoration. It is put back for other users of numba.
     elsewhere, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _CACHE
     try:
         return numba.njit(
@@ -26,6 +27,6 @@ def kernel(function, forceinline=False):
         numba.config.CACHE_DIR = elsewhere
 
 
-def inlined(function):
+def inlined(function: Callable) -> Callable:
     """Compile a function into its callers: a loop over lanes vectorises only without calls."""
     return kernel(function, forceinline=True)

@@ -1,6 +1,7 @@
 """Formulas compiled to C functions that kernels call by their addresses."""
 
 from functools import cache
+from typing import Any
 
 import numba
 import sympy
@@ -9,12 +10,14 @@ from numba import types
 from numba.extending import intrinsic
 
 
-@cache  # without bound: kernels keep the addresses
-def compiled(expression, variables, precision="float64"):
+@cache  # Nothing is ever dropped, because kernels keep the addresses.
+def compiled(
+    expression: sympy.Expr, variables: tuple[sympy.Symbol, ...], precision: str = "float64"
+) -> Any:
     """Compile an expression to a C function over the lanes of a panel.
 
-    A pointer, rather than a jitted function, keeps the kernels' type independent of the
-    formula: they are compiled once and cached on disk for every potential there will ever be.
+    Kernels take its address. Their type then does not depend on the formula, so that they are
+    compiled once and cached on disk for all potentials.
 
     Parameters
     ----------

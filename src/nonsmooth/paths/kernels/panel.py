@@ -11,31 +11,32 @@ import numpy as np
 from nonsmooth.paths.kernels.compilation import inlined, kernel
 from nonsmooth.paths.kernels.random_numbers import BLOCK, generator_words
 from nonsmooth.paths.kernels.vector_math import larger, smaller
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
-FLUSH = 64  # steps between additions in double precision
+FLUSH = 64  # steps after which integrals are added in double precision
 
 _CACHE_LINE = 64  # bytes
-# A row's width is an odd number of cache lines, so that equal places in two rows never share a
-# cache set.
+# A row is an odd number of cache lines wide. Equal places of two rows then lie in different cache
+# sets and do not push each other out.
 WIDTH = 1008
 
-# Rows of `data`: four normal numbers, the state, scratch, what the step adds to int g, and
-# since the last flush int g, its martingale part and that part's quadratic variation; int g at
-# the last flush, max |int g|, int g one step earlier, and its extremes where these are followed.
+# Rows of `data`. 0 to 3: normal numbers. 4 to 7: the state. 8 to 15: scratch. From 16 on:
+# GAIN, what the step adds to int g; DELTA, int g since the last flush; MARTINGALE, its martingale
+# part, and VARIATION, the quadratic variation of that, since then; BASE, int g at the last flush;
+# PEAK, max |int g|; BEFORE, int g one step earlier; LOW and HIGH, its extremes where followed.
 STATE = ZETA, ETA, Y, X = 4, 5, 6, 7
 WORK = 8
 GAIN, DELTA, MARTINGALE, VARIATION, BASE, PEAK, BEFORE, LOW, HIGH = range(16, 25)
 ROWS = 25
-# Rows of `total`: int g, martingale and variation up to the last flush.
+# Rows of `total`: int g, its martingale part and the variation, up to the last flush.
 TOTAL_DELTA, TOTAL_MARTINGALE, TOTAL_VARIATION = range(3)
 
 
 class Panel(NamedTuple):
     """Arrays of one block of paths, one lane each.
 
-    The kernels see them with a shape that the compiler knows, so that it need not
-    ask whether rows overlap.
+    The kernels see them with a fixed shape: the compiler then knows that rows do not overlap.
 
     Attributes
     ----------
@@ -50,7 +51,7 @@ class Panel(NamedTuple):
     total: np.ndarray
 
 
-def new_panel(scene, seed, block, precision="float32"):
+def new_panel(scene: Scene, seed: int | tuple, block: int, precision: str = "float32") -> Panel:
     """Return the panel of a block at time 0.
 
     Parameters
@@ -69,7 +70,7 @@ def new_panel(scene, seed, block, precision="float32"):
 
 
 def _aligned(rows, kind):
-    """Zeros whose rows start at cache lines, so that no vector straddles two."""
+    """Zeros whose rows start at cache lines, so that no vector lies across two."""
     size = rows * WIDTH * np.dtype(kind).itemsize
     memory = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
     first = -memory.ctypes.data % _CACHE_LINE
@@ -110,8 +111,8 @@ def follow_extremes(data, lanes):
 def retire(words, data, total, lanes, lower, upper):
     """Drop the lanes whose int g has reached one of the levels; return how many are left.
 
-    A path that has left every bound stays, so that it is seen at the end. The last lane takes the
-    place of a dropped one, so that those left stay side by side.
+    A path that has become infinite is not dropped, so that the divergence is noticed at the end.
+    The last lane takes the place of a dropped one, so that those left stay side by side.
     """
     symmetric = lower == -upper
     i = 0

@@ -19,12 +19,13 @@ from nonsmooth.errors import SceneError
 from nonsmooth.paths.kernels import vector_math
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.vector_math import fma, like
+from nonsmooth.scenes.scene import Scene
 
 BLOCK = 1000  # paths per stream; changing it changes every Monte Carlo result
 _U = np.uint32
 
 
-def generator_words(scene, seed, block):
+def generator_words(scene: Scene, seed: int | tuple, block: int) -> np.ndarray:
     """Return the initial states of the generators of one block of paths.
 
     Parameters
@@ -54,7 +55,7 @@ def generator_words(scene, seed, block):
     return np.ascontiguousarray(words.reshape(BLOCK, 4).T)
 
 
-def blocks(first, count):
+def blocks(first: int, count: int) -> list[tuple[int, int]]:
     """Split `count` paths from path number `first` on into (block, paths) pairs.
 
     Raises
@@ -67,8 +68,8 @@ def blocks(first, count):
     return [((first + done) // BLOCK, min(BLOCK, count - done)) for done in range(0, count, BLOCK)]
 
 
-def labelled(seed, label):
-    """Return the seed of an ensemble of its own."""
+def labelled(seed: int | tuple, label: str | int) -> tuple:
+    """Return the seed of another ensemble, independent of that of `seed`."""
     return (*seed, label) if isinstance(seed, tuple) else (seed, label)
 
 
@@ -106,7 +107,7 @@ def _box_muller(like_this, first, second):
 
 @inlined
 def normals(words, out, lanes):
-    """Fill out[0] and out[1] with independent standard normal numbers, each lane from its own.
+    """Fill out[0] and out[1] with independent standard normal numbers, one generator a lane.
 
     Parameters
     ----------

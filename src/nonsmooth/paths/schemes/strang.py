@@ -10,9 +10,9 @@ N   the noise: exact Gaussian step if its equation is linear, otherwise half a d
     linear equation is d y = -C_b y dt + sigma dW.
 
 Between two noise steps neighbouring half-flows are merged into Y(h/2) X(h) Y(h/2), or into
-Y(h) where the displacement is not needed. int g is gathered over the noise step, as the mean of
-g before and after it; the penalty force is gathered as what it takes from its flow, exactly but
-for the damping within the flow of dry friction under colored noise.
+Y(h) where the displacement is not needed. A noise step adds to int g the mean of g before and
+after it. If g is the penalty force, its integral is instead what the force takes from its flow,
+which is exact but for the damping within the flow of dry friction under colored noise.
 
 Weak order 2 where the drift is smooth, 1.5 across the kink of the friction law, stable for
 every n. Scenes that differ only in n consume the same increments: they are driven by the
@@ -54,7 +54,7 @@ from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import ABSOLUTE_VALUE, BARRIER
 from nonsmooth.scenes.scene import Scene
 
-# kernels compare integers, not names
+# Kernels compare integers, not names.
 _PLASTIC, _FRICTION, _SPRING = 0, 1, 2  # what the penalty force is
 _WHITE, _LANGEVIN, _HAMILTONIAN = 0, 1, 2
 _NOISE_CODE = {"white": _WHITE, "langevin": _LANGEVIN, "hamiltonian": _HAMILTONIAN}
@@ -228,7 +228,7 @@ def gaussian_step(matrix, sigma, step):
     if step * np.linalg.norm(matrix) < 1:
         block = np.block([[-matrix, diffusion], [np.zeros((size, size)), matrix.T]])
         covariance = transition @ scipy.linalg.expm(block * step)[:size, size:]
-    else:  # the block's growing half would swallow the other
+    else:  # Over a long step the growing half of the block would swallow the other.
         stationary = scipy.linalg.solve_continuous_lyapunov(matrix, -diffusion)
         covariance = stationary - transition @ stationary @ transition.T
     padded = np.zeros((2, 2, 2))
@@ -243,7 +243,7 @@ def gaussian_step(matrix, sigma, step):
 @inlined
 def flow(s, data, first, last, lanes):
     """Mechanical flows between two noise steps, or the first or the last half-flows."""
-    # every part is called in one place only, which is what compiling them costs
+    # Every part is called in one place only, because each call of it is compiled anew.
     half = s.step / like(s.step, 2.0)
     merged = not (s.moves or first or last)  # Y(h) at once
     for part in range(2):
@@ -309,7 +309,7 @@ def _shake(s, data, normal, lanes):
 @inlined
 def _drift_flow(s, data, t, lanes):
     """Classical Runge-Kutta step of the deterministic part of a nonlinear noise."""
-    # the observable's value is not in use meanwhile
+    # The scratch rows are free here: the value of g is not in use.
     stage, slope, total = WORK, WORK + 4, WORK + 6
     two, zero = like(t, 2.0), like(t, 0.0)
     for row in range(2):
@@ -348,8 +348,8 @@ def _gain(s, data, lanes):
 def _gather_martingale(s, data, normal, lanes):
     """Add the martingale's increment, c kick + c' (kick^2 - its mean)/2, and its variance.
 
-    c = u' at the state before the kick: u(y + kick) - u(y) to second order, less its mean, so
-    that what is left does not grow with the square root of the step.
+    c = u' at the state before the kick. This is u(y + kick) - u(y) to second order, less its mean;
+    first order alone would leave an error of the order of the root of the step.
     """
     one, two = like(s.reach, 1.0), like(s.reach, 2.0)
     for i in range(lanes):
@@ -388,7 +388,7 @@ def _displace(s, data, t, lanes):
             if s.limit:
                 after, x = exact_flows.elastic_impact(y, x, t)
             else:
-                # in units of the knot, where the contact begins
+                # In units of the knot, where the contact begins.
                 after, x = exact_flows.spring_contact(per_knot * y, per_knot * x, t, s.omega)
                 after, x = s.knot * after, s.knot * x
             data[Y, i], data[X, i] = after, x
