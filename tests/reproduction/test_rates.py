@@ -37,7 +37,7 @@ def test_too_few_differences():
         slope(N, np.ones(5), [1.0, 1.0, 1.0, 0.1, 0.1])
 
 
-def test_growth_of_dry_friction_is_of_second_order():
+def test_gamma2_of_dry_friction_is_of_second_order():
     """gamma_n^2 - gamma^2 ~ 0.173 n^-2."""
     value, error = gamma2_difference(ns.Scene("friction", n=1000))
     assert value * 1e6 == pytest.approx(0.1726, abs=1e-3)

@@ -188,7 +188,10 @@ def coupled(
     scheme, precision = sampling.scheme, sampling.precision
     grid = equal_steps(times, sampling.step)
     pairs = [
-        tuple(registry.coefficients(scene, scheme, length, precision) for length in (h / 2, h))
+        tuple(
+            registry.coefficients(scene, scheme, half_or_whole, precision)
+            for half_or_whole in (h / 2, h)
+        )
         for _, h in grid
     ]
 

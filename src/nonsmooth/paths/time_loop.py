@@ -61,7 +61,7 @@ def _of_known_shape(panel):
 
 @kernel
 def march(s, panel, lanes, steps, lower, upper):
-    """Advance the paths of a panel; paths whose int g reaches one of the levels are dropped.
+    """Advance the paths of a panel and drop those whose int g reaches one of the levels.
 
     Parameters
     ----------
@@ -72,8 +72,8 @@ def march(s, panel, lanes, steps, lower, upper):
         Number of paths.
     steps : int
     lower, upper : float
-        Levels, infinite if there are none; looked at after every `FLUSH` steps and at the end,
-        for the extremes of all steps.
+        Levels, infinite if there are none. The extremes over all steps are compared with them,
+        after every `FLUSH` steps and at the end.
 
     Returns
     -------
