@@ -1,11 +1,18 @@
 """The noises have their known laws."""
 
+from dataclasses import dataclass
+from typing import ClassVar
+
 import numpy as np
 import pytest
+import sympy
 from scipy import integrate, linalg, stats
 
 import nonsmooth as ns
+from nonsmooth.errors import SceneError
 from nonsmooth.paths.schemes import strang
+from nonsmooth.scenes.noises import Noise
+from nonsmooth.scenes.symbols import eta, zeta
 
 FALSE_ALARM = 1e-4
 
@@ -104,3 +111,34 @@ def test_kanai_tajimi_velocity_is_gaussian():
     zeta = samples(ns.KanaiTajimi(3.0, 1.0, 0.9), 20.0, 0.1, 20_000, 3)["zeta"]
     law = stats.kstest(zeta, stats.norm(scale=0.9 / np.sqrt(2)).cdf)
     assert law.pvalue > FALSE_ALARM
+
+
+@dataclass(frozen=True)
+class Filtered:
+    """Ornstein-Uhlenbeck noise that is filtered once more: a kind that the library lacks."""
+
+    sigma: float = 1.0
+    kind: ClassVar[str] = "filtered"
+    title: ClassVar[str] = "filtered noise"
+    driven: ClassVar[sympy.Symbol] = zeta
+    forcing: ClassVar[sympy.Expr] = eta
+
+    @property
+    def drift(self):
+        """Both relax with the rate 1."""
+        return {zeta: -zeta, eta: zeta - eta}
+
+
+def test_a_noise_of_another_kind_is_simulated():
+    """By the Euler-Maruyama scheme, with the stationary covariance; grids refuse it."""
+    scene = ns.Scene("friction", Filtered(), observable="eta")
+    assert isinstance(scene.noise, Noise)
+    assert scene.state == ("zeta", "eta")
+    found = samples(Filtered(), 15.0, 0.01, 20_000, 5)
+    matrix = np.array([[-1.0, 0.0], [1.0, -1.0]])
+    exact = linalg.solve_continuous_lyapunov(matrix, -np.diag([1.0, 0.0]))
+    covariance = np.cov(found["zeta"], found["eta"])
+    # five standard errors and the bias of the step, of order 1
+    assert np.allclose(covariance, exact, atol=5 / np.sqrt(20_000) + 0.01)
+    with pytest.raises(SceneError, match="monte_carlo"):
+        ns.asymptotic_variance(ns.Scene("friction", Filtered()), method="deterministic")
