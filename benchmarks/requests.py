@@ -24,7 +24,7 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.crossing import corrected_formula
+from nonsmooth.boundary_layer import milne
 from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.errors import NonsmoothError, ToleranceError
 from nonsmooth.grids import tensor_grid
@@ -271,7 +271,7 @@ def asked_gap(request, tol, _seed):
 
 def asked_length(request, tol, seed):
     """Ask for kappa."""
-    found = ns.extrapolation_length(request.scene, tol, seed, threads=1)
+    found = ns.extrapolation_length(request.scene, tol, seed=seed, threads=1)
     return found.value, found.method
 
 
@@ -619,7 +619,7 @@ def empty_caches():
     """Forget what has been computed of scenes; compiled formulas stay."""
     for kept in (
         quadrature.solved,
-        corrected_formula._constants,
+        milne.layer_constants,
         tail_equation.equation,
         tail_equation.reach,
     ):

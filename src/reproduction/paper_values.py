@@ -20,7 +20,7 @@ from reproduction.tables import penalization, scientific
 
 SIGNIFICANT = 3.0  # standard errors from which on the text calls the formula too low
 
-CONSTANTS = ("diffusion", "kappa", "dispersion", "corner", "stretch", "start")
+CONSTANTS = ("diffusion", "kappa", "dispersion", "dipole", "kappa3", "h")
 
 
 def paper_values(artifacts: Mapping, settings: Mapping) -> dict:

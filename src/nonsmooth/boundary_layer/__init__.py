@@ -1,1 +1,16 @@
-"""The boundary layer at a threshold."""
+"""The boundary layer at a threshold: what int g does there that Brownian motion does not.
+
+int g is differentiable, so it meets a threshold with g > 0, and cannot turn there at once. In a
+layer below the threshold it obeys the Milne problem, a kinetic equation in a half space, whose
+constants correct the asymptotic formula for crossing probabilities; the first is the extrapolation
+length kappa. The manual derives them in `docs/methods/boundary_layer.md`.
+
+- `extrapolation_length.extrapolation_length`: kappa of any scene for which it is known.
+- `milne.layer_constants`: all constants, by the method that the scene allows.
+- `constants.LayerConstants`: the record of them, which every method returns.
+- `symmetric_line.layer_constants`: one variable, odd g; up to the order 3.
+- `asymmetric_line.layer_constants`: one variable, any g; up to the order 2.
+- `two_variables.layer_constants`: two variables, odd g; the order 1.
+- `sampled`: any odd g, by Monte Carlo; the order 1.
+- `tuning`: resolutions and switching points.
+"""

@@ -1,67 +1,46 @@
-"""The Milne problem at the two walls of a scene with the state y, for a g without symmetry.
+"""The Milne problem at both thresholds, for one variable with white noise and a g without symmetry.
 
-At the upper wall A q + g d_x q = 0 for x < 0, q = 0 at x = 0 where g > 0, and q ~ kappa - x - u as
-x -> -inf, u the Poisson solution of g; at the lower, its mirror image.
+At the upper threshold A q + g d_x q = 0 for x < 0, q = 0 at x = 0 where g > 0, and
+q ~ kappa - x - u as x -> -inf, where A u = -g; at the lower one, its mirror image.
+`docs/methods/boundary_layer.md` has the derivation.
 """
 
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
 
+from nonsmooth.boundary_layer import tuning
+from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.solver import EVEN
-from nonsmooth.kinetic.ordinates_line import ordinates
+from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
 from nonsmooth.line import quadrature
-
-_DEGREES = (7, 9, 11, 13, 15, 17, 20)
-_CENTRED = 1e-9  # largest mean of g, relative to its standard deviation
-
-
-@dataclass(frozen=True)
-class Walls:
-    """Constants of the expansion to the order 1/p, of a self-adjoint generator.
-
-    Attributes
-    ----------
-    diffusion : float
-        D = gamma^2 / 2.
-    lower, upper : float
-        kappa of either wall; upper - lower = C / D.
-    skewness : float
-        C = E[g u^2]; the third cumulant of int_0^t g grows like 6 C t.
-    dispersion : float
-        B = E[g r]; the logarithm of E exp(q int_0^t g) grows like (D q^2 + C q^3 + B q^4) t.
-    lower_corner, upper_corner : float
-        S, the dipole that the start of time leaves at either wall.
-    poisson, start : float
-        u and h at the start; A u = -g, A h = D - g u, A r = D u + C - g h.
-    """
-
-    diffusion: float
-    lower: float
-    upper: float
-    skewness: float
-    dispersion: float
-    lower_corner: float
-    upper_corner: float
-    poisson: float
-    start: float
+from nonsmooth.refine import until_agreement
+from nonsmooth.scenes.scene import Scene
 
 
-def walls(scene, tol=1e-8):
-    """Compute the constants of both walls.
+def applies(scene: Scene) -> bool:
+    """Whether the scene has the state y and white noise, and g or the drift is not odd."""
+    return scene.is_line and not scene.is_odd()
+
+
+def layer_constants(
+    scene: Scene, tol: float | None = None
+) -> tuple[LayerConstants, LayerConstants]:
+    """Compute the constants of both thresholds, up to the order 2.
 
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and E g = 0; g not odd, whose grid would be halved.
-    tol : float
-        Absolute error wanted of all constants.
+        To which this `applies`, with E g = 0; if g is odd, its grid is a half, which this cannot
+        take.
+    tol : float, optional
+        Absolute error wanted of all constants; 1e-8 unless given.
 
     Returns
     -------
-    constants, errors : Walls
+    constants, errors : LayerConstants
         The errors are the differences of two polynomial degrees.
 
     Raises
@@ -71,36 +50,46 @@ def walls(scene, tol=1e-8):
     ToleranceError
         If `tol` is not met; the message has the best values and their error.
     """
+    tol = tuning.LINE.accuracy if tol is None else tol
     mean = quadrature.mean(scene)[0]
-    values = _walls(scene, _DEGREES[0], mean)
-    for degree in _DEGREES[1:]:
-        previous, values = values, _walls(scene, degree, mean)
-        errors = np.abs(np.subtract(astuple(values), astuple(previous)))
-        if errors.max() <= tol:
-            return values, Walls(*(float(error) for error in errors))
-    raise ToleranceError(
-        f"kappa = {values.lower:.10g}, {values.upper:.10g} and the other constants have errors up "
-        f"to {errors.max():.1e}, above tol = {tol:g}; loosen tol"
+    found = until_agreement(
+        tuning.LINE.degrees,
+        lambda degree: _on_degree(scene, degree, mean),
+        lambda levels: levels[-1].distance(levels[-2]),
+        lambda _, errors: errors.largest() <= tol,
     )
-
-
-def _walls(scene, degree, mean):
-    """Solve by the modes that decay from each wall; 1 and x + u are apart.
-
-    Modes (a + psi) exp(mu x), psi = 0 at one node, satisfy K psi = mu M g (a + psi) and carry no
-    flux, E[g psi] = 0. With the Cholesky factor of K they are eigenvectors of a symmetric matrix on
-    the complement of the flux, 1/mu its eigenvalues, and its row along the flux is a.
-    """
-    grid = ordinates(scene, degree)
-    spread = np.sqrt(grid.masses @ grid.g**2)
-    if abs(mean) > _CENTRED * spread:
-        raise SceneError(
-            f"the extrapolation length needs E g = 0, but g = {scene.observable!r} has the mean "
-            f"{mean:.10g}; subtract it from g"
+    if not found.met:
+        lower, upper = found.value.kappa
+        raise ToleranceError(
+            f"kappa = {lower:.10g}, {upper:.10g} and the other constants have errors up "
+            f"to {found.error.largest():.1e}, above tol = {tol:g}; loosen tol"
         )
+    return found.value, found.error
+
+
+@dataclass(frozen=True)
+class _Modes:
+    """Modes exp(mu x) of the layers at both thresholds, and the Poisson solution u.
+
+    The mode j is `shapes[:, j]`, with 1/mu = `inverses[j]`; those with mu > 0 decay from the upper
+    threshold, the others from the lower one.
+    """
+
+    diffusion: float
+    u: np.ndarray
+    inverses: np.ndarray
+    shapes: np.ndarray
+
+
+def _modes(grid: Ordinates, g: np.ndarray) -> _Modes:
+    """Compute the modes; the solutions 1 and x + u of the Milne equation do not decay.
+
+    Modes (a + psi) exp(mu x), psi = 0 at one node, satisfy K psi = mu M g (a + psi), with the
+    stiffness matrix K and the masses M, and carry no flux, E[g psi] = 0. With the Cholesky factor
+    of K they are eigenvectors of a symmetric matrix on the complement of the flux, 1/mu its
+    eigenvalues, and its row along the flux is the constant a.
+    """
     rest = np.delete(np.arange(len(grid.g)), np.argmax(grid.masses))
-    # what the quadrature leaves of the mean
-    g = grid.g - np.where(grid.g == 0, 0.0, grid.masses @ grid.g)
     weights = grid.masses[rest] * g[rest]
     factor = scipy.linalg.cholesky(grid.stiffness[EVEN][np.ix_(rest, rest)], lower=True)
 
@@ -121,30 +110,48 @@ def _walls(scene, degree, mean):
     vectors = complement @ vectors
     modes = spread_out(vectors) - (flux @ coupling @ vectors) / diffusion
     u = spread_out(flux)
-    u = u - grid.masses @ u
+    return _Modes(diffusion, u - grid.masses @ u, inverses, modes)
+
+
+def _at_threshold(grid: Ordinates, g: np.ndarray, modes: _Modes, side: int) -> tuple:
+    """Solve the Milne problem at one side, -1 or 1; returns kappa and the integral of E d."""
+    leaving = np.flatnonzero(side * g > 0)
+    decaying = np.argsort(-side * modes.inverses)[: len(leaving) - 1]
+    scale = np.sqrt(grid.masses[leaving])
+    matrix = np.column_stack([np.ones(len(leaving)), modes.shapes[np.ix_(leaving, decaying)]])
+    solution = np.linalg.solve(scale[:, None] * matrix, scale * side * modes.u[leaving])
+    means = grid.masses @ modes.shapes
+    return solution[0], (means * np.abs(modes.inverses))[decaying] @ solution[1:]
+
+
+def _on_degree(scene: Scene, degree: int, mean: float) -> LayerConstants:
+    """Solve both Milne problems on elements of one degree; `mean` is E g."""
+    grid = ordinates(scene, degree)
+    spread = np.sqrt(grid.masses @ grid.g**2)
+    if abs(mean) > tuning.LINE.centred * spread:
+        raise SceneError(
+            f"the extrapolation length needs E g = 0, but g = {scene.observable!r} has the mean "
+            f"{mean:.10g}; subtract it from g"
+        )
+    # without what the quadrature leaves of the mean
+    g = grid.g - np.where(grid.g == 0, 0.0, grid.masses @ grid.g)
+    modes = _modes(grid, g)
+    diffusion, u = modes.diffusion, modes.u
     h = grid.resolvent(0.0, EVEN, (g * u)[:, None])[:, 0]
     skewness, square = grid.masses @ (g * u**2), grid.masses @ u**2
     r = grid.resolvent(0.0, EVEN, (g * h - diffusion * u)[:, None])[:, 0]
-    means = grid.masses @ modes
-    lengths, corners = [], []
-    for side in (-1, 1):
-        leaving = np.flatnonzero(side * g > 0)
-        decaying = np.argsort(-side * inverses)[: len(leaving) - 1]
-        scale = np.sqrt(grid.masses[leaving])
-        matrix = np.column_stack([np.ones(len(leaving)), modes[np.ix_(leaving, decaying)]])
-        solution = np.linalg.solve(scale[:, None] * matrix, scale * side * u[leaving])
-        dipole = (means * np.abs(inverses))[decaying] @ solution[1:]
-        lengths.append(float(solution[0]))
-        # of the other wall, whose layer, reflected, solves the adjoint problem at this one
-        corners.append(
-            float(square - solution[0] ** 2 / 2 + dipole - (skewness / diffusion) ** 2 / 2)
-        )
-    return Walls(
-        float(diffusion),
-        *lengths,
-        float(skewness),
-        float(grid.masses @ (g * r)),
-        *corners[::-1],
-        float(grid.start[EVEN] @ u),
-        float(grid.start[EVEN] @ h),
+    layers = [_at_threshold(grid, g, modes, side) for side in (-1, 1)]
+    # the layer of the other threshold, reflected, solves the adjoint problem at this one
+    upper, lower = (
+        float(square - kappa**2 / 2 + mean_layer - (skewness / diffusion) ** 2 / 2)
+        for kappa, mean_layer in layers
+    )
+    return LayerConstants(
+        diffusion=float(diffusion),
+        kappa=(float(layers[0][0]), float(layers[1][0])),
+        u=float(grid.start[EVEN] @ u),
+        skewness=float(skewness),
+        dispersion=float(grid.masses @ (g * r)),
+        dipole=(lower, upper),
+        h=float(grid.start[EVEN] @ h),
     )

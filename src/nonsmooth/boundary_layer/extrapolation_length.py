@@ -2,14 +2,22 @@
 
 import time
 
-from nonsmooth.boundary_layer import two_variables
-from nonsmooth.boundary_layer.asymmetric_line import walls
+from nonsmooth.boundary_layer.milne import solved_constants
 from nonsmooth.boundary_layer.sampled import sampled_length
-from nonsmooth.boundary_layer.symmetric_line import EXACT, expansion
+from nonsmooth.errors import SceneError
 from nonsmooth.estimate import Estimate
+from nonsmooth.scenes.scene import Scene
+
+SIDES = ("lower", "upper")
 
 
-def extrapolation_length(scene, tol=None, seed=0, threads=None):
+def extrapolation_length(
+    scene: Scene,
+    tol: float | None = None,
+    side: str = "upper",
+    seed: int | tuple = 0,
+    threads: int | None = None,
+) -> Estimate:
     """Distance kappa by which the threshold of the Brownian limit lies beyond the scene's.
 
     Parameters
@@ -20,39 +28,30 @@ def extrapolation_length(scene, tol=None, seed=0, threads=None):
     tol : float, optional
         Absolute error wanted, "1"; 1e-8, 1e-3 for two variables, or by Monte Carlo a fifth of
         kappa, unless given.
+    side : {"upper", "lower"}, optional
+        Of the threshold. For odd g kappa is the same on both sides.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 
     Returns
     -------
-    Estimate or (Estimate, Estimate)
-        For odd g one kappa, the same at both thresholds; otherwise those of the lower and of the
-        upper threshold. The error is the difference of two polynomial degrees, or of two tensor
-        grids; of Monte Carlo, see `overshoot.sampled_length`.
+    Estimate
+        kappa, "1". The error is the difference of two polynomial degrees, or of two tensor grids;
+        of Monte Carlo, see `sampled`.
 
     Raises
     ------
     SceneError
-        If the scene is of another kind.
+        If the scene is of another kind, or the side is unknown.
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
+    if side not in SIDES:
+        raise SceneError(f"unknown side {side!r}; choose {' or '.join(map(repr, SIDES))}")
     began = time.perf_counter()
-    if two_variables.applies(scene):
-        constants, errors = two_variables.leading(scene, **({} if tol is None else {"tol": tol}))
-        seconds = time.perf_counter() - began
-        return Estimate(constants.length, errors.length, "tensor grids", seconds)
-    if not scene.is_line:
+    solved = solved_constants(scene, tol)
+    if solved is None:
         return sampled_length(scene, tol, seed, threads)
-    tol = EXACT if tol is None else tol
-    if not scene.is_odd():
-        constants, errors = walls(scene, tol)
-        seconds = time.perf_counter() - began
-        return tuple(
-            Estimate(getattr(constants, side), getattr(errors, side), "discrete ordinates", seconds)
-            for side in ("lower", "upper")
-        )
-    constants, errors = expansion(scene, tol)
-    return Estimate(
-        constants.length, errors.length, "discrete ordinates", time.perf_counter() - began
-    )
+    kappa, error = (numbers.kappa[SIDES.index(side)] for numbers in solved)
+    method = "discrete ordinates" if scene.is_line else "tensor grids"
+    return Estimate(kappa, error, method, time.perf_counter() - began)

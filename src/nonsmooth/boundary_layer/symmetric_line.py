@@ -1,106 +1,105 @@
-"""The Milne problem at a threshold, and the constants of the corrected asymptotic formula.
+"""The Milne problem of one variable with white noise and odd g, on half of the line.
 
-A q + g d_x q = 0 for x < 0, q = 0 at x = 0 where g > 0, and q ~ kappa - x - u as x -> -inf, u the
-Poisson solution of g: int g, which is differentiable, behaves towards a threshold b like a Brownian
-motion towards b + kappa.
+At the upper threshold A q + g d_x q = 0 for x < 0, q = 0 at x = 0 where g > 0, and
+q ~ kappa - x - u as x -> -inf, where A u = -g. `docs/methods/boundary_layer.md` has the derivation.
 """
 
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
 
+from nonsmooth.boundary_layer import tuning
+from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.kinetic.ordinates_line import ordinates
-
-EXACT = 1e-8
-_DEGREES = (7, 9, 11, 13, 15, 17, 20)
-
-
-@dataclass(frozen=True)
-class Expansion:
-    """Constants of the expansion in p^(-1/2), of a self-adjoint generator and odd g.
-
-    Attributes
-    ----------
-    diffusion : float
-        D = gamma^2 / 2.
-    length : float
-        kappa, the extrapolation length.
-    dispersion : float
-        B = E[g r]: long waves decay at the rate D k^2 - B k^4 / p.
-    corner : float
-        S, the dipole that the start of time leaves at the thresholds.
-    stretch : float
-        kappa_3: waves of the wave number k see the length kappa + kappa_3 k^2 / p.
-    poisson, start, third : float
-        u, h and r at the start; A u = -g, A h = D - g u, A r = D u - g h.
-    """
-
-    diffusion: float
-    length: float
-    dispersion: float
-    corner: float
-    stretch: float
-    poisson: float
-    start: float
-    third: float
+from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
+from nonsmooth.refine import until_agreement
+from nonsmooth.scenes.scene import Scene
 
 
-_LENGTH = list(Expansion.__dataclass_fields__).index("length")
+def applies(scene: Scene) -> bool:
+    """Whether the scene has the state y, white noise, and odd g and drift."""
+    return scene.is_line and scene.is_odd()
 
 
-def expansion(scene, tol=EXACT):
-    """Compute the constants of the corrected asymptotic formula.
+def layer_constants(
+    scene: Scene, tol: float | None = None
+) -> tuple[LayerConstants, LayerConstants]:
+    """Compute all constants, up to the order 3.
 
     Parameters
     ----------
-    scene, tol
-        The state y, white noise and odd g; absolute error wanted of kappa, and of the other
-        constants relative to the largest of all, if that is above 1.
+    scene : Scene
+        To which this `applies`.
+    tol : float, optional
+        Absolute error wanted of kappa, and of the other constants relative to the largest of all,
+        if that is above 1; 1e-8 unless given.
 
     Returns
     -------
-    constants, errors : Expansion
+    constants, errors : LayerConstants
+        The errors are the differences of two polynomial degrees.
 
     Raises
     ------
-    SceneError, ToleranceError
-        As `extrapolation_length`.
+    SceneError
+        If the scene is of another kind.
+    ToleranceError
+        If `tol` is not met; the message has the best value and its error.
     """
-    if not (scene.is_line and scene.is_odd()):
+    if not applies(scene):
         raise SceneError(
             f"the constants of second order are computed for the state (y), white noise and odd g, "
             f"not for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
             f"{scene.observable!r}; choose such a scene"
         )
-    values = _expansion(scene, _DEGREES[0])
-    for degree in _DEGREES[1:]:
-        previous, values = values, _expansion(scene, degree)
-        errors = np.abs(np.subtract(astuple(values), astuple(previous)))
-        allowed = tol * max(1.0, np.max(np.abs(astuple(values))))
-        if errors.max() <= allowed and errors[_LENGTH] <= tol:
-            return values, Expansion(*(float(error) for error in errors))
-    raise ToleranceError(
-        f"kappa = {values.length:.10g} has an error of {errors[_LENGTH]:.1e} and the other "
-        f"constants up to {errors.max():.1e}, above tol = {tol:g}; loosen tol"
+    tol = tuning.LINE.accuracy if tol is None else tol
+
+    def met(values, errors):
+        return errors.largest() <= tol * max(1.0, values.largest()) and errors.kappa[1] <= tol
+
+    found = until_agreement(
+        tuning.LINE.degrees,
+        lambda degree: _on_degree(scene, degree),
+        lambda levels: levels[-1].distance(levels[-2]),
+        met,
     )
+    values, errors = found.value, found.error
+    if not found.met:
+        raise ToleranceError(
+            f"kappa = {values.kappa[1]:.10g} has an error of {errors.kappa[1]:.1e} and the other "
+            f"constants up to {errors.largest():.1e}, above tol = {tol:g}; loosen tol"
+        )
+    return values, errors
 
 
-def _expansion(scene, degree):
-    """Solve the Milne problem by the modes that decay as x -> -inf; 1 and x + u are apart.
+@dataclass(frozen=True)
+class _Milne:
+    """The solution q = kappa - x - u + d of the Milne problem, d a sum of modes that decay.
+
+    The mode j has the even part `even[:, j]` and the odd part `odd[:, j]`, both times its strength
+    in q, and decays like exp(x / inverses[j]). The first even node is the origin, where odd parts
+    and u are 0 and which they leave out.
+    """
+
+    diffusion: float
+    kappa: float
+    u: np.ndarray
+    inverses: np.ndarray
+    even: np.ndarray
+    odd: np.ndarray
+    means: np.ndarray
+
+
+def _milne(grid: Ordinates) -> _Milne:
+    """Solve by the modes that decay as x -> -inf; the solutions 1 and x + u do not decay.
 
     Modes (e + o) exp(mu x) of even e = a + psi, psi = 0 at the origin, and odd o satisfy
-    K_o o = mu M g e, K_e psi = mu M g o, and carry no flux, E[g o] = 0, which fixes a. With
-    Cholesky factors of the stiffness matrices they are the singular vectors of one matrix, and
-    1/mu its singular values.
-
-    kappa_3 comes from the solution M of the Milne problem and its reflection M*(xi, y) = M(xi, -y):
-    the next order, A M_2 + g d_xi M_2 = - D M, has d_xi E[g M_2 M*] = - D E[M M*], and E[g M_2 M*]
-    is 0 at the wall.
+    K_o o = mu M g e and K_e psi = mu M g o, with the stiffness matrices K and the masses M, and
+    carry no flux, E[g o] = 0, which fixes the constant a. With Cholesky factors of the stiffness
+    matrices they are the singular vectors of one matrix, whose singular values are 1/mu.
     """
-    grid = ordinates(scene, degree)
     inner = slice(1, None)  # without the origin
     kept = np.flatnonzero(grid.g[inner])
     g, weights = grid.g[inner], grid.masses[inner]
@@ -126,38 +125,58 @@ def _expansion(scene, degree):
     odd_parts = backward(odd, complement @ left[:, :used])
     even_parts = backward(even, right[:used].T)
     constant = -(flux @ coupling @ right[:used].T) / diffusion
+    # q = 0 where g > 0, scaled so that the equations are those of L^2(m)
     leaving = constant + even_parts + np.sign(g)[:, None] * odd_parts
     rows = np.sqrt(weights[kept])
     solution = np.linalg.solve(
         rows[:, None] * np.column_stack([np.ones(len(kept)), leaving[kept]]),
         rows * (np.sign(g) * u)[kept],
     )
-    length, strengths = solution[0], solution[1:]
-    # of the layer's modes, with their strengths: the mean, the even and the odd part
-    means = strengths * (constant + weights @ even_parts)
-    even_layer = strengths * np.vstack([constant, constant + even_parts])
-    odd_layer = strengths * odd_parts
-    # integrals over xi < 0: of the mean of the layer d; of 2 (kappa - xi) d + 2 u d; and of d d*
-    dipole = means @ inverses
-    moments = 2 * (means @ (inverses * (length + inverses)) + (weights * u) @ odd_layer @ inverses)
-    overlaps = even_layer.T @ (grid.masses[:, None] * even_layer) - odd_layer.T @ (
-        weights[:, None] * odd_layer
+    kappa, strengths = solution[0], solution[1:]
+    return _Milne(
+        diffusion,
+        kappa,
+        u,
+        inverses,
+        even=strengths * np.vstack([constant, constant + even_parts]),
+        odd=strengths * odd_parts,
+        means=strengths * (constant + weights @ even_parts),
+    )
+
+
+def _on_degree(scene: Scene, degree: int) -> LayerConstants:
+    """Integrate the solution of the Milne problem.
+
+    kappa3 comes from the solution q and its reflection q*(x, y) = q(x, -y). The next order,
+    A q_2 + g d_x q_2 = - D q, has d_x E[g q_2 q*] = - D E[q q*], and E[g q_2 q*] is 0 at the
+    threshold.
+    """
+    grid = ordinates(scene, degree)
+    milne = _milne(grid)
+    inner = slice(1, None)
+    g, weights = grid.g[inner], grid.masses[inner]
+    diffusion, kappa, u, inverses = milne.diffusion, milne.kappa, milne.u, milne.inverses
+    # integrals over x < 0: of E d, of 2 (kappa - x) E d + 2 E[u d], and of E[d d*]
+    dipole = milne.means @ inverses
+    moments = 2 * (
+        milne.means @ (inverses * (kappa + inverses)) + (weights * u) @ milne.odd @ inverses
+    )
+    overlaps = milne.even.T @ (grid.masses[:, None] * milne.even) - milne.odd.T @ (
+        weights[:, None] * milne.odd
     )
     decays = np.outer(inverses, inverses) / np.add.outer(inverses, inverses)
     square = weights @ u**2
-
-    def centred_even(values):
-        return grid.resolvent(0.0, EVEN, values[:, None])[:, 0]
-
-    h = centred_even(np.append(0.0, g * u))
-    r = grid.resolvent(0.0, ODD, np.append(0.0, g * h[inner] - diffusion * u)[:, None])[inner, 0]
-    return Expansion(
-        float(diffusion),
-        float(length),
-        float(np.sum(weights * g * r)),
-        float(square - length**2 / 2 + dipole),
-        float(square * length - length**3 / 3 + moments + np.sum(overlaps * decays)),
-        float(grid.start[ODD][inner] @ u),
-        float(grid.start[EVEN] @ h),
-        float(grid.start[ODD][inner] @ r),
+    h = grid.resolvent(0.0, EVEN, np.append(0.0, g * u)[:, None])[:, 0]
+    source = np.append(0.0, g * h[inner] - diffusion * u)
+    r = grid.resolvent(0.0, ODD, source[:, None])[inner, 0]
+    both = float(square - kappa**2 / 2 + dipole)
+    return LayerConstants(
+        diffusion=float(diffusion),
+        kappa=(float(kappa), float(kappa)),
+        u=float(grid.start[ODD][inner] @ u),
+        dispersion=float(np.sum(weights * g * r)),
+        dipole=(both, both),
+        h=float(grid.start[EVEN] @ h),
+        kappa3=float(square * kappa - kappa**3 / 3 + moments + np.sum(overlaps * decays)),
+        r=float(grid.start[ODD][inner] @ r),
     )

@@ -4,6 +4,34 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class Line:
+    """The Milne problem of one variable, by spectral elements."""
+
+    accuracy: float = 1e-8  # absolute, unless asked; chosen: rounding of the constants is 1e-10
+    # chosen: from what suffices for smooth g to where rounding is all that is left
+    degrees: tuple[int, ...] = (7, 9, 11, 13, 15, 17, 20)
+    centred: float = 1e-9  # largest |E g| over the deviation of g; chosen: above rounding of E g
+
+
+@dataclass(frozen=True)
+class TwoVariables:
+    """The Milne problem of two variables, on tensor grids."""
+
+    accuracy: float = 1e-3  # absolute, unless asked; chosen: what takes up to two minutes
+    depth: float = 16.0  # the box ends where the density is exp(-16) of its largest; chosen: 1e-7
+    largest: int = 3000  # nodes with g != 0; chosen: a minute of dense linear algebra
+    # correlation of g and its Poisson solution below which gamma^2 counts as 0; chosen: above the
+    # discretisation error of a gamma^2 that is 0
+    standstill: float = 1e-3
+    gamma2: float = 1e-5  # relative error wanted of gamma^2; chosen: it costs less than the rest
+    # the last change of a variable is at most the tolerance over this; derived: twice the change of
+    # either of two variables is half the tolerance, the rest is left to what they change together
+    safety: float = 8.0
+    # smallest scale of a node over the largest; chosen: discrete densities are rounding below
+    smallest_scale: float = 1e-10
+
+
+@dataclass(frozen=True)
 class Sampled:
     """kappa by Monte Carlo."""
 
@@ -23,4 +51,6 @@ class Sampled:
     halved: int = 4
 
 
+LINE = Line()
+TWO_VARIABLES = TwoVariables()
 SAMPLED = Sampled()

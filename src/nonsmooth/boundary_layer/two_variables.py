@@ -1,60 +1,47 @@
-"""The Milne problem of `milne` for two state variables, whose generator A is not self-adjoint.
+"""The Milne problem of two variables with odd g and drift, whose generator A is not self-adjoint.
 
-Discretised on half of a tensor grid, functions being odd or even: drift and g are odd.
+At the upper threshold A q + g d_x q = 0 for x < 0, q = 0 at x = 0 where g > 0, and
+q ~ kappa - x - u as x -> -inf, where A u = -g. Functions are odd or even, so that they are
+discretised on half of a tensor grid. `docs/methods/boundary_layer.md` has the derivation.
 """
 
+import itertools
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
 
+from nonsmooth.boundary_layer import tuning
+from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import fitted, solver
+from nonsmooth.refine import Refined, until_agreement
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.gamma2_on_grids import gamma2_by_combination
 
-_DEPTH = 16.0  # the density outside the box is of the order exp(-16) of its maximum
-_LARGEST = 3000  # nodes with g != 0: a minute
-_STANDSTILL = 1e-3  # correlation of g and its Poisson solution, below which gamma^2 may be 0
-_GROWTH = 1e-5  # relative error wanted of gamma^2
-_SHARE = 8.0  # the last change of a variable is at most this part of the tolerance
-_LEAST = 1e-10  # of the scale of a node, relative to the largest
 
-
-@dataclass(frozen=True)
-class Leading:
-    """Constants of the corrected formula of order 1.
-
-    Attributes
-    ----------
-    diffusion, length, poisson : float
-        D = gamma^2/2, the extrapolation length kappa, and the Poisson solution of g at the start.
-    """
-
-    diffusion: float
-    length: float
-    poisson: float
-
-
-def applies(scene):
+def applies(scene: Scene) -> bool:
     """Whether the scene has two state variables, a finite n, and odd g and drift."""
     return scene.dimension == 2 and not math.isinf(scene.n) and scene.is_odd()
 
 
-def leading(scene, tol=1e-3):
-    """Compute the constants of a scene to which this `applies`.
+def layer_constants(
+    scene: Scene, tol: float | None = None
+) -> tuple[LayerConstants, LayerConstants]:
+    """Compute the constants of the order 1.
 
     Parameters
     ----------
     scene : Scene
-    tol : float
-        Absolute error wanted of kappa and of the Poisson solution.
+        To which this `applies`.
+    tol : float, optional
+        Absolute error wanted of kappa and of the Poisson solution; 1e-3 unless given.
 
     Returns
     -------
-    constants, errors : Leading
+    constants, errors : LayerConstants
         Each variable is refined alone, and the changes are added up. The error is twice the last
         change of each, and what the first refinements change together beyond that sum.
 
@@ -65,16 +52,19 @@ def leading(scene, tol=1e-3):
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
-    grid, best = fitted(scene, _DEPTH, 0), math.nan
+    tol = tuning.TWO_VARIABLES.accuracy if tol is None else tol
+    grid, best = fitted(scene, tuning.TWO_VARIABLES.depth, 0), math.nan
     while True:
         values, errors = _refined_from(scene, grid, tol, best)
         if errors.max() <= tol:
             break
         grid, best = grid.all_raised(), values[0]
-    gamma2, uncertainty = gamma2_by_combination(scene, _GROWTH)
+    gamma2, uncertainty = gamma2_by_combination(scene, tuning.TWO_VARIABLES.gamma2)
+    kappa, u = map(float, values)
+    kappa_error, u_error = map(float, errors)
     return (
-        Leading(gamma2 / 2, *map(float, values)),
-        Leading(uncertainty / 2, *map(float, errors)),
+        LayerConstants(gamma2 / 2, (kappa, kappa), u),
+        LayerConstants(uncertainty / 2, (kappa_error, kappa_error), u_error),
     )
 
 
@@ -84,52 +74,59 @@ def _refined_from(scene, coarse, tol, best):
     base = _solved(scene, coarse, best)
     values, errors, once = base, np.zeros(2), {}
     for symbol in coarse.levels:
-        grid, last, change = coarse, base, np.full(2, np.inf)
-        while np.max(change) > tol / _SHARE:
-            grid, previous = grid.raised(symbol), last
-            last = _solved(scene, grid, values[0])
-            once.setdefault(symbol, last)
-            change = np.abs(last - previous)
-        values = values + last - base
-        errors = errors + 2 * change
+        found, once[symbol] = _refined_along(scene, coarse, symbol, base, values[0], tol)
+        values = values + found.value - base
+        errors = errors + 2 * found.error
     # what the variables change together beyond the sum of what they change alone
     both = _solved(scene, coarse.raised(first).raised(second), values[0])
     together = both - once[first] - once[second] + base
     return values + together, errors + np.abs(together)
 
 
+def _refined_along(scene, coarse, symbol, base, best, tol) -> tuple[Refined, np.ndarray]:
+    """Refine one variable until it has settled; returns also the values after one refinement."""
+    levels = {}
+
+    def solve(level):
+        levels[level] = _solved(scene, coarse.raised(symbol, level), best) if level else base
+        return levels[level]
+
+    found = until_agreement(
+        itertools.count(),  # ends with the error of `_solved` where the grid is too large
+        solve,
+        lambda solutions: np.abs(solutions[-1] - solutions[-2]),
+        lambda _, change: np.max(change) <= tol / tuning.TWO_VARIABLES.safety,
+    )
+    return found, levels[1]
+
+
 def _solved(scene, grid, best):
     values = _milne(scene, grid)
     if values is None:
         raise ToleranceError(
-            f"kappa = {best:.7g} does not settle on grids of {_LARGEST} nodes; loosen tol"
+            f"kappa = {best:.7g} does not settle on grids of {tuning.TWO_VARIABLES.largest} nodes; "
+            "loosen tol"
         )
     return values
 
 
-def _milne(scene, grid):
-    """Return kappa and the Poisson solution at the start, or None if the grid is too large.
-
-    The solution is kappa - x - u and the modes that decay as x -> -inf: (e + o) exp(mu x) with
-    -A o = mu g e and -A e = mu g o. They carry no flux, E[g o] = 0, which fixes the constant in e.
-    1/mu^2 are the eigenvalues of one matrix on o.
-    """
+def _milne(scene: Scene, grid) -> np.ndarray | None:
+    """Return kappa and the Poisson solution at the start, or None if the grid is too large."""
     axes, solve = solver(scene, grid)
     everywhere = solve.fold(evaluate(scene.numerical_observable(), axes))
     kept = np.flatnonzero(np.abs(everywhere) > 1e-13 * np.max(np.abs(everywhere)))
-    if len(kept) > _LARGEST:
+    if len(kept) > tuning.TWO_VARIABLES.largest:
         return None
-    # discrete masses, of both mirror images together: in the tails, upwind ones may be negative
+    # masses of both mirror images together; upwind ones may be negative in the tails
     measure, g = 2 * solve.fold(solve.stationary()), everywhere[kept]
-    flow = measure[kept] * g
     source = np.zeros((len(everywhere), len(kept)))
     source[kept, np.arange(len(kept))] = g
     odd = np.linalg.solve(-solve.matrix(ODD).toarray(), source)
     whole = odd.sum(axis=1)
     u = whole[kept]
-    diffusion = flow @ u
+    diffusion = (measure[kept] * g) @ u
     scatter = math.sqrt(abs((measure @ everywhere**2) * (measure @ whole**2)))
-    if diffusion < _STANDSTILL * scatter:
+    if diffusion < tuning.TWO_VARIABLES.standstill * scatter:
         raise SceneError(
             f"gamma^2 of g = {scene.observable!r} is 0 in this scene, so that there is no "
             "extrapolation length; choose another observable, or method='monte_carlo'"
@@ -138,11 +135,24 @@ def _milne(scene, grid):
         [[-solve.matrix(EVEN).toarray(), np.ones((len(measure), 1))], [measure, np.zeros(1)]]
     )
     even = np.linalg.solve(border, np.vstack([source, np.zeros((1, len(kept)))]))[kept]
-    odd = odd[kept]
+    kappa = _extrapolated(g, measure, kept, odd[kept], even, u, diffusion)
+    return np.array([kappa, start_row(scene, axes) @ solve.unfold(whole, ODD)])
+
+
+def _extrapolated(g, measure, kept, odd, even, u, diffusion) -> float:
+    """Solve the Milne problem at the nodes with g != 0 and return kappa.
+
+    The solution is kappa - x - u and the modes that decay as x -> -inf: (e + o) exp(mu x) with
+    -A o = mu g e and -A e = mu g o. They carry no flux, E[g o] = 0, which fixes the constant in e.
+    1/mu^2 are the eigenvalues of one matrix on o, the product of the inverses of -A on odd and on
+    even functions (`odd` and `even`), each applied to g times a function.
+    """
+    flow = measure[kept] * g
     constant = -(flow @ odd) / diffusion @ even
     even = even + constant
     # scaled as if A were self-adjoint
-    masses = np.maximum(np.abs(measure), _LEAST * np.max(np.abs(measure)))[kept]
+    smallest = tuning.TWO_VARIABLES.smallest_scale * np.max(np.abs(measure))
+    masses = np.maximum(np.abs(measure), smallest)[kept]
     scale = 1 / np.sqrt(masses * np.abs(g))
     without_flux = scipy.linalg.qr((flow * scale)[:, None])[0][:, 1:]
     product = without_flux.T @ ((odd @ even) * scale / scale[:, None]) @ without_flux
@@ -154,5 +164,4 @@ def _milne(scene, grid):
     rows = np.sqrt(masses)
     matrix = rows[:, None] * np.column_stack([np.ones(len(kept)), leaving])
     size = np.linalg.norm(matrix, axis=0)
-    length = (np.linalg.solve(matrix / size, rows * np.sign(g) * u) / size)[0].real
-    return np.array([length, start_row(scene, axes) @ solve.unfold(whole, ODD)])
+    return (np.linalg.solve(matrix / size, rows * np.sign(g) * u) / size)[0].real

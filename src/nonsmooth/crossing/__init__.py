@@ -1,1 +1,17 @@
-"""Crossing probabilities."""
+"""Crossing probabilities: the chance that int g leaves an interval before a time.
+
+This is the quantity that an engineer asks for. For times and thresholds that grow together it tends
+to that of Brownian motion, a closed formula; corrected formulas add the boundary layer at the
+thresholds; at a finite scale it is also computed without such an expansion, from a kinetic equation
+or by counting paths. The manual has the derivations and the choice of the method in
+`docs/methods/crossing.md`.
+
+- `probability.crossing_probability`: the public function, which chooses the method.
+- `brownian`: `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`, and the
+  asymptotic formula, `asymptotic_crossing`.
+- `corrected_formula.corrected_crossing`: corrected formulas with their errors, from the
+  distribution functions of `expansion` and the mean over the clock of `random_clock`.
+- `first_passage`: the deterministic method.
+- `counting`: Monte Carlo.
+- `tuning`: resolutions and switching points.
+"""

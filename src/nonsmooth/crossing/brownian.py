@@ -6,25 +6,21 @@ z = pi^2 T / (2 L^2), it stays between them up to T with the probability
     4/pi sum_{odd n} sin(n pi near/L)/n exp(-n^2 z)                                    (modes)
   = erf(near/r) - sum_k (-1)^k [erfc((k L + far)/r) - erfc(((k+1) L + near)/r)]        (images),
 
-the paper's series and its theta dual. Each is used where nothing cancels: the images where
-near >= sqrt(T), or L >= 10 sqrt(T) and the sum is below rounding; the modes elsewhere, where the
-terms that count have one sign.
+the paper's series and the one that Poisson summation makes of it. The images are used where
+near >= sqrt(T), because nothing cancels, or where L >= 10 sqrt(T), because their sum is below
+rounding; the modes elsewhere, where all terms that count have one sign.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import erf, erfc, erfcx
 
+from nonsmooth.crossing import tuning
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.thresholds import bounds
 
-# What is left out is below 1e-20 of the first term: exp(-(33^2 - 1) z) where L = 10 sqrt(T), and
-# exp(-(11^2 - 1)/2) where near = far = sqrt(T).
-_MODES = range(1, 33, 2)
-_IMAGES = range(5)
-_REACH = 100  # in sqrt(T); levels beyond are reached with probability exp(-5000), 0 in double
 
-
-def brownian_crossing(b, T, lower=None):
+def brownian_crossing(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
     """Probability that W reaches b or the lower level before T, W_star of eq. (defFexplicit).
 
     Parameters
@@ -50,18 +46,18 @@ def brownian_crossing(b, T, lower=None):
     """
     path = _Path(b, T, lower)
     early = path.tail(path.near) + path.reflected(path.tail)
-    return path.chosen(early, 1 - path.modes(lambda n: 4 / (np.pi * n)), 0.0)
+    return path.chosen(early, 1 - path.modes(lambda n: 4 / (np.pi * n)), at_once=0.0)
 
 
-def brownian_exit(b, T, lower):
+def brownian_exit(b: float, T: ArrayLike, lower: float) -> np.ndarray:
     """Probability that W reaches b before T and before the lower level.
 
     Parameters
     ----------
     b, lower : float
         lower < 0 < b, each possibly infinite.
-    T : numpy.ndarray
-        Horizons, "1"; at 0 nothing has been reached.
+    T : array_like
+        Horizons, "1"; at 0 no level has been reached.
 
     Returns
     -------
@@ -75,12 +71,14 @@ def brownian_exit(b, T, lower):
     if np.isinf(lower):
         return erfc(b / root)
     width = b - lower
-    late = -lower / width - _waves(b, T, width, lambda k: 2 / (np.pi * k))
-    early = sum(erfc((k + b) / root) - erfc((k + 2 * width - b) / root) for k in _turns(width))
+    late = -lower / width - _modes(b, T, width, lambda k: 2 / (np.pi * k))
+    early = sum(
+        erfc((k + b) / root) - erfc((k + 2 * width - b) / root) for k in _round_trips(width)
+    )
     return np.where(width**2 > T, early, late)
 
 
-def brownian_exit_density(b, T, lower):
+def brownian_exit_density(b: float, T: ArrayLike, lower: float) -> np.ndarray:
     """Density in T of `brownian_exit`, with a relative error of some units in the last place.
 
     Parameters are those of `brownian_exit`; T is positive.
@@ -99,25 +97,25 @@ def brownian_exit_density(b, T, lower):
     if np.isinf(lower):
         return rate(b)
     width = b - lower
-    late = _waves(b, T, width, lambda k: np.pi * k / width**2)
-    early = sum(rate(k + b) - rate(k + 2 * width - b) for k in _turns(width))
+    late = _modes(b, T, width, lambda k: np.pi * k / width**2)
+    early = sum(rate(k + b) - rate(k + 2 * width - b) for k in _round_trips(width))
     return np.where(width**2 > T, early, late)
 
 
-def _turns(width):
-    """Ways to and fro; what is left out is below exp(-100) for T < width^2."""
-    return 2 * width * np.arange(8)
+def _round_trips(width):
+    """Lengths of the ways to and fro between the levels, for T < width^2."""
+    return 2 * width * np.arange(tuning.BROWNIAN_SERIES.exit_turns)
 
 
-def _waves(b, T, width, weight):
-    """Sum over the eigenfunctions; what is left out is below exp(-300) for T > width^2."""
+def _modes(b, T, width, weight):
+    """Sum over the eigenfunctions, for T > width^2."""
     return sum(
         weight(k) * np.sin(k * np.pi * b / width) * np.exp(-T * (k * np.pi / width) ** 2 / 2)
-        for k in range(1, 9)
+        for k in tuning.BROWNIAN_SERIES.exit_modes
     )
 
 
-def brownian_survival(b, T, lower=None):
+def brownian_survival(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
     """Probability that W stays below b and above the lower level up to T, 1 - W_star.
 
     Parameters and errors are those of `brownian_crossing`, and so is the relative accuracy,
@@ -129,10 +127,12 @@ def brownian_survival(b, T, lower=None):
     """
     path = _Path(b, T, lower)
     early = erf(path.near / np.sqrt(2 * path.T)) - path.reflected(path.tail)
-    return path.chosen(early, path.modes(lambda n: 4 / (np.pi * n)), 1.0)
+    return path.chosen(early, path.modes(lambda n: 4 / (np.pi * n)), at_once=1.0)
 
 
-def brownian_first_passage_density(b, T, lower=None):
+def brownian_first_passage_density(
+    b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None
+) -> np.ndarray:
     """Density in T of the time when W first reaches b or the lower level, d W_star / d T.
 
     Parameters and errors are those of `brownian_crossing`, and so is the relative accuracy,
@@ -144,7 +144,7 @@ def brownian_first_passage_density(b, T, lower=None):
     """
     path = _Path(b, T, lower)
     early = path.rate(path.near) + path.reflected(path.rate)
-    return path.chosen(early, path.modes(lambda n: 2 * np.pi * n / path.width**2), 0.0)
+    return path.chosen(early, path.modes(lambda n: 2 * np.pi * n / path.width**2), at_once=0.0)
 
 
 class _Path:
@@ -154,7 +154,7 @@ class _Path:
         b = np.asarray(b, dtype=float)
         lower = -b if lower is None else np.asarray(lower, dtype=float)
         b, lower, T = np.broadcast_arrays(b, lower, np.asarray(T, dtype=float))
-        # what is not a number stays that
+        # nan is neither, and stays nan
         for wrong, need in (
             (b <= 0, "an upper level b > 0"),
             (lower >= 0, "a lower level < 0"),
@@ -165,7 +165,7 @@ class _Path:
         self.began = T != 0
         self.T = np.where(T == 0, 1.0, T)
         near, far = np.minimum(b, -lower), np.maximum(b, -lower)
-        reach = _REACH * np.sqrt(self.T)
+        reach = tuning.BROWNIAN_SERIES.reach * np.sqrt(self.T)
         self.near, self.far = np.minimum(near, reach), np.minimum(far, reach)
         self.width = self.near + self.far
 
@@ -182,29 +182,35 @@ class _Path:
         """Sum a term over the images."""
         return sum(
             (-1) ** k * (term(k * self.width + self.far) - term((k + 1) * self.width + self.near))
-            for k in _IMAGES
+            for k in tuning.BROWNIAN_SERIES.images
         )
 
     def modes(self, weight):
-        """Sum of the eigenfunctions' terms, the first one's decay taken out."""
+        """Sum over the eigenfunctions; the decay of the first is a factor of the sum."""
         z = np.pi**2 / 2 * (self.T / self.width / self.width)
         place = np.pi * (self.near / self.width)
-        terms = (weight(n) * np.sin(n * place) * np.exp((1 - n * n) * z) for n in _MODES)
+        terms = (
+            weight(n) * np.sin(n * place) * np.exp((1 - n * n) * z)
+            for n in tuning.BROWNIAN_SERIES.modes
+        )
         return _decay(z, sum(terms))
 
     def chosen(self, images, modes, at_once):
         """Take the series that loses nothing, or the value at T = 0."""
-        by_images = (self.near**2 >= self.T) | (self.width**2 >= 100 * self.T)
+        few_images = self.width**2 >= tuning.BROWNIAN_SERIES.images_from * self.T
+        by_images = (self.near**2 >= self.T) | few_images
         return np.where(self.began, np.where(by_images, images, modes), at_once)
 
 
 def _decay(exponent, factor):
-    """Return factor exp(-exponent), which may be a double where the exponential is none."""
+    """Return factor exp(-exponent), also where the exponential alone would underflow."""
     half = np.exp(-exponent / 2)
     return half * (factor * half)
 
 
-def asymptotic_crossing(threshold, horizons, variance, variance_error):
+def asymptotic_crossing(
+    threshold: float | tuple[float, float], horizons: ArrayLike, gamma2: float, gamma2_error: float
+) -> tuple[np.ndarray, np.ndarray]:
     """W_star of a threshold over gamma, and the error it inherits from gamma^2.
 
     Parameters
@@ -213,7 +219,7 @@ def asymptotic_crossing(threshold, horizons, variance, variance_error):
         As for `thresholds.bounds`.
     horizons : array_like, shape (k,)
         T, "1".
-    variance, variance_error : float
+    gamma2, gamma2_error : float
         gamma^2 and its error.
 
     Returns
@@ -221,9 +227,9 @@ def asymptotic_crossing(threshold, horizons, variance, variance_error):
     value, error : numpy.ndarray, shape (k,)
     """
     lower, upper = bounds(threshold)
-    # W crosses b/gamma by T as it crosses b by gamma^2 T
+    # W reaches b / gamma before T as likely as b before gamma^2 T
     value, below, above = (
-        brownian_crossing(upper, max(variance + shift, 0.0) * np.asarray(horizons), lower)
-        for shift in (0.0, -variance_error, variance_error)
+        brownian_crossing(upper, max(gamma2 + shift, 0.0) * np.asarray(horizons), lower)
+        for shift in (0.0, -gamma2_error, gamma2_error)
     )
     return value, np.maximum(np.abs(above - value), np.abs(value - below)) + 4e-16

@@ -1,47 +1,47 @@
 """Corrected asymptotic formulas for threshold crossing, with a bound of their error.
 
-The order k has an error of the order p^(-(k+1)/2), see `resummed` for the formulas. Order 1 moves
-the thresholds outwards by the extrapolation length; order 2 takes the state y with white noise, and
-order 3 odd g, too. Without symmetry of g each threshold has its own constants, and the third
-cumulant of int g counts at the order 1.
+The order k has an error of the order p^(-(k+1)/2); `expansion` has the formulas. Order 1 is for odd
+g, or for the state y with white noise; order 2 for the latter; order 3 for the latter with odd g.
 
-The error of an order is its distance to the last one that is known, k, and what that one changes as
-the time is multiplied or divided by exp(R),
+The stated error is the distance of the order to the last one that is known, k, and what that one
+changes as the time is multiplied or divided by exp(R), where R is what the next order may do:
 
-    R = a x^((k+1)/2) / (1 + c x^((k-1)/2)),  x = s^2 z / D,
+    R = a x^((k+1)/2) / (1 + c x^((k-1)/2)),  x = s^2 z / D.
 
-what the next order may do to the clock: with s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 order 2
-changes it by about x, z being the frequency that matters at T, 1/T and the logarithmic derivative
-of the rate of passage. s = m of `resummed` where order 2 is not known. The start sees the layer's
-end, of the relative size (m/b) exp(-b/m), which is added. Where the layer is so thick
-that order 1 is left, R grows with m over the threshold b instead. It is at most the time that the
-layer can explain.
-Not in the error are large excursions of a g that grows faster than the theorems allow, of which the
-scene warns: they make early crossings likelier than any of this.
+Here s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 is the size of what order 2 changes, and z the
+frequency that matters at this time: its inverse and the logarithmic derivative of the rate of
+passage. Where order 2 is not known, s is the thickness m of the layer. To R is added the relative
+size (m/b) exp(-b/m) of the layer at the start. Where the layer is so thick that order 1 is returned
+to, R grows with m/b instead, and it is at most the time that the layer can explain. The numbers a
+and c are fitted, see `tuning`.
+
+Large excursions of a g that grows faster than the theorems allow are not in the error; the scene
+warns of such a g. They make early crossings likelier than all of this.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
-from nonsmooth.boundary_layer import two_variables
-from nonsmooth.boundary_layer.asymmetric_line import walls
-from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
-from nonsmooth.boundary_layer.symmetric_line import expansion
-from nonsmooth.crossing.expansion import Constants, Formula
+from nonsmooth.boundary_layer.constants import LayerConstants
+from nonsmooth.boundary_layer.milne import highest_order, layer_constants
+from nonsmooth.crossing import tuning
+from nonsmooth.crossing.expansion import Expansion
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.paths.kernels.random_numbers import labelled
-from nonsmooth.statistics.asymptotic_variance import limit_variance
-
-# a and c for every k, as measured on a hundred one-dimensional scenes and intervals, with a margin
-_DOUBT = {1: (1.0, 0.0), 2: (0.3, 2.0), 3: (0.6, 2.0)}
-_THICK = 1.3  # R over (m / b) y / (1 + y), y = m^2 z / D, where order 1 is left, as measured
-_LONGEST = 1.5, 2.0  # R is at most the first, and the second times log(1 + 2 m / b)
-_LEADING = ("diffusion", "lower", "upper", "poisson", "skewness")
+from nonsmooth.scenes.scene import Scene
 
 
-def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0, threads=None):
+def corrected_crossing(
+    scene: Scene,
+    threshold: tuple[float, float],
+    horizons: np.ndarray,
+    p: float,
+    order: int,
+    tol: float | None = None,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
     """P(int_0^t g leaves (sqrt(p) lower, sqrt(p) upper) before p T), corrected for a finite p.
 
     Parameters
@@ -49,7 +49,7 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
     scene : Scene
         With the state y and white noise; odd g for the order 3. For order 1 also two
         variables with finite n and odd g, or any other with odd g.
-    lower, upper : float
+    threshold : (float, float)
         lower < 0 < upper, one of them possibly infinite, "1".
     horizons : numpy.ndarray, shape (k,)
         T > 0, "1".
@@ -73,27 +73,16 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
     ToleranceError
         If an error is above `tol`; the message has the value and its error.
     """
-    if order not in (1, 2, 3):
-        raise SceneError(
-            f"the corrected formula has the orders 1, 2 and 3, not {order!r}; choose one"
-        )
-    known = _highest_order(scene)
-    if order > known:
-        need = "the state (y) and white noise" if known == 1 else "odd g"
-        raise SceneError(
-            f"the corrected formula of order {order} needs {need}, not ({', '.join(scene.state)}) "
-            f"with {scene.noise.title} and g = {scene.observable!r}; use order={known} or "
-            "method='monte_carlo'"
-        )
-    constants, errors = _constants(scene, seed, threads)
+    _require_order(scene, order)
+    constants, errors = layer_constants(scene, seed, threads)
     times = p * np.asarray(horizons, dtype=float)
-    formula = Formula(constants, known, np.sqrt(p) * lower, np.sqrt(p) * upper)
-    if not formula.below < 0 < formula.above:  # e u(start) is beyond a threshold: nothing is known
-        value, error = np.ones(times.shape), np.ones(times.shape)
-    else:
+    formula = Expansion(constants, *(np.sqrt(p) * level for level in threshold))
+    if formula.moved_lower < 0 < formula.moved_upper:
         found = formula.orders(times)
         value = found[order - 1]
-        error = np.abs(found[-1] - value) + _doubt(formula, errors, times, found[-1])
+        error = np.abs(found[-1] - value) + _error_of_last(formula, errors, times, found[-1])
+    else:  # the start is worth more than the way to a threshold: nothing is known
+        value, error = np.ones(times.shape), np.ones(times.shape)
     worst = int(np.argmax(error))
     if tol is not None and not error[worst] <= tol:
         raise ToleranceError(
@@ -104,72 +93,76 @@ def corrected_crossing(scene, lower, upper, horizons, p, order, tol=None, seed=0
     return value, error
 
 
-def _highest_order(scene):
-    if not scene.is_line:
-        return 1
-    return 3 if scene.is_odd() else 2
-
-
-@lru_cache(maxsize=16)  # the same for every p and interval
-def _constants(scene, seed, threads):
-    """Return the constants of the formula, and their errors."""
-    if scene.is_line and scene.is_odd():
-        return tuple(
-            Constants(
-                diffusion=c.diffusion,
-                lower=c.length,
-                upper=c.length,
-                poisson=c.poisson,
-                dispersion=c.dispersion,
-                lower_corner=c.corner,
-                upper_corner=c.corner,
-                start=c.start,
-                stretch=c.stretch,
-                third=c.third,
-            )
-            for c in expansion(scene)
+def _require_order(scene, order):
+    """Refuse an order that there is not, or not for this scene."""
+    if order not in (1, 2, 3):
+        raise SceneError(
+            f"the corrected formula has the orders 1, 2 and 3, not {order!r}; choose one"
         )
-    if scene.is_line:
-        return tuple(Constants(**vars(c)) for c in walls(scene))
-    if two_variables.applies(scene):
-        return tuple(
-            Constants(c.diffusion, c.length, c.length, c.poisson)
-            for c in two_variables.leading(scene)
+    known = highest_order(scene)
+    if order > known:
+        need = "the state (y) and white noise" if known == 1 else "odd g"
+        raise SceneError(
+            f"the corrected formula of order {order} needs {need}, not ({', '.join(scene.state)}) "
+            f"with {scene.noise.title} and g = {scene.observable!r}; use order={known} or "
+            "method='monte_carlo'"
         )
-    length = sampled_length(scene, seed=labelled(seed, "length"), threads=threads)
-    gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
-    start = sampled_poisson(scene, labelled(seed, "start"), threads)
-    return (
-        Constants(gamma2.value / 2, length.value, length.value, start.value),
-        Constants(gamma2.error / 2, length.error, length.error, start.error),
-    )
 
 
-def _doubt(formula, errors, times, last):
+def _error_of_last(
+    formula: Expansion, errors: LayerConstants, times: np.ndarray, last: np.ndarray
+) -> np.ndarray:
     """Bound the distance of the last order to the probability."""
-    c, thickness = formula.constants, formula.thickness
-    frequency = formula.frequency(times)
-    x, thick = (size**2 * frequency / c.diffusion for size in (formula.second, formula.length))
-    rising, falling = _DOUBT[formula.known]
-    next_order = rising * x ** ((formula.known + 1) / 2)
-    next_order /= 1 + falling * x ** ((formula.known - 1) / 2)
-    # what the start still sees of the layer, which decays like exp(-1/thickness)
-    next_order += thickness * np.exp(-1 / thickness)
-    # where the layer is thick, order 1 is left
-    change = formula.share * next_order + (1 - formula.share) * _THICK * thickness * thick / (
-        1 + thick
-    )
-    # what the constants of the orders 2 and 3 may do to the clock
-    corner = max(errors.lower_corner, errors.upper_corner)
-    change += (errors.start + corner) / (c.diffusion * times)
-    change += errors.dispersion * frequency / c.diffusion**2
-    change += (errors.stretch + errors.third) * np.sqrt(frequency / c.diffusion) / times
-    change = np.minimum(change, _LONGEST[0] + _LONGEST[1] * np.log1p(2 * thickness))
-    error = np.full(times.shape, 1e-15)
+    change = _next_order(formula, times)
+    for inherited in _inherited(formula, errors, times):
+        change += inherited
+    least, more = tuning.CORRECTED_ERROR.longest
+    change = np.minimum(change, least + more * np.log1p(2 * formula.knudsen))
+    error = np.full(times.shape, tuning.CORRECTED_ERROR.rounding)
     error += np.max([np.abs(formula.last(times * np.exp(s * change)) - last) for s in (-1, 1)], 0)
     plain = formula.first(times)
-    for name in _LEADING:
-        if getattr(errors, name) > 0:
-            moved = replace(c, **{name: getattr(c, name) + getattr(errors, name)})
-            error += np.abs(replace(formula, constants=moved).first(times) - plain)
+    for moved in _moved_by_errors(formula.constants, errors):
+        error += np.abs(replace(formula, constants=moved).first(times) - plain)
     return np.minimum(error, 1.0)
+
+
+def _next_order(formula, times):
+    """Return the logarithm of the factor of time that the next order may be worth."""
+    c, knudsen = formula.constants, formula.knudsen
+    frequency = formula.frequency(times)
+    x, thick = (
+        size**2 * frequency / c.diffusion
+        for size in (formula.second_order_scale, formula.layer_thickness)
+    )
+    rising, falling = tuning.CORRECTED_ERROR.next_order[c.order - 1]
+    next_order = rising * x ** ((c.order + 1) / 2)
+    next_order /= 1 + falling * x ** ((c.order - 1) / 2)
+    # what the start still sees of the layer, which decays like exp(-1 / knudsen)
+    next_order += knudsen * np.exp(-1 / knudsen)
+    # where the layer is thick, order 1 is returned to
+    first_order = (1 - formula.weight) * tuning.CORRECTED_ERROR.thick * knudsen * thick
+    return formula.weight * next_order + first_order / (1 + thick)
+
+
+def _inherited(formula, errors, times):
+    """Yield what the errors of the constants of the orders 2 and 3 add to that logarithm."""
+    D, frequency = formula.constants.diffusion, formula.frequency(times)
+    if errors.order > 1:
+        yield (errors.h + max(errors.dipole)) / (D * times)
+        yield errors.dispersion * frequency / D**2
+    if errors.order > 2:
+        yield (errors.kappa3 + errors.r) * np.sqrt(frequency / D) / times
+
+
+def _moved_by_errors(c: LayerConstants, errors: LayerConstants) -> Iterator[LayerConstants]:
+    """Move each constant of order 1 by its error, one at a time."""
+    lower, upper = c.kappa
+    for moved in (
+        replace(c, diffusion=c.diffusion + errors.diffusion),
+        replace(c, kappa=(lower + errors.kappa[0], upper)),
+        replace(c, kappa=(lower, upper + errors.kappa[1])),
+        replace(c, u=c.u + errors.u),
+        replace(c, skewness=c.skewness + errors.skewness),
+    ):
+        if moved != c:
+            yield moved

@@ -1,45 +1,42 @@
 """Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b).
 
 A threshold is a number b, for both sides, or a pair (lower, upper): see `thresholds.bounds`.
+`docs/methods/crossing.md` describes the methods and the choice among them.
 """
 
 import inspect
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from nonsmooth.checks import require_increasing, require_positive
+from nonsmooth.crossing import tuning
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.thresholds import bounds
 from nonsmooth.statistics.asymptotic_variance import limit_variance, stationary_mean
 
-# Seconds on one core, as measured: of a coarse step of a path, with all that comes on top, and of
-# the deterministic method for one and two variables for times that grow by the factor _WINDOW
-_STEP = 4e-9
-_SECONDS, _WINDOW = {1: 0.4, 2: 8.0}, 20.0
-_SAMPLED, _PATIENCE = 1e-4, 1e11  # tolerance, and steps, up to which a failed solver is replaced
-_PILOT_SHARE = 0.1  # of the solver's time, which the pilot may cost
-_FORMULA, _REACHED = 0.05, 0.03  # seconds, and the least error times p^2, of the corrected formula
-
 
 def crossing_probability(
-    scene,
-    threshold,
-    horizons,
-    p=1.0,
-    method=None,
-    tol=None,
-    step=None,
-    paths=None,
-    seed=0,
-    precision=None,
-    threads=None,
-    order=None,
-):
+    scene: Scene,
+    threshold: float | tuple[float, float],
+    horizons: ArrayLike,
+    p: float = 1.0,
+    method: str | None = None,
+    tol: float | None = None,
+    step: float | None = None,
+    paths: int | None = None,
+    seed: int | tuple = 0,
+    precision: str | None = None,
+    threads: int | None = None,
+    order: int | None = None,
+) -> xr.Dataset:
     """Probability that int_0^t g leaves an interval before p T.
 
     Parameters
@@ -53,22 +50,25 @@ def crossing_probability(
     p : float
         Scale of the functional central limit theorem, > 0.
     method : {"monte_carlo", "deterministic", "asymptotic", "corrected"}, optional
-        ``"deterministic"`` is for the state y with white noise and, in up to a minute or two, for
-        two state variables with finite n, odd g and drift, and white or Langevin noise. It
-        is taken there, unless a method or a parameter of another one is given, or `tol` is so loose
-        that ``"monte_carlo"`` should be faster or, for one variable, the error of ``"corrected"``
-        is below it; ``"monte_carlo"`` elsewhere: for three and four state variables, and for two
-        where the solver misses its tolerance.
-        ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent);
-        ``"corrected"`` has an error of the order 1/p, p^(-3/2) or, for odd g, p^(-2), see
-        `corrected`; beyond the state y with white noise it needs odd g, order 1 and, with more than
-        two variables, constants that are sampled.
+        Chosen by the scene, `tol` and the other parameters unless given.
+
+        - ``"deterministic"`` solves an equation for the first passage. It is for the state y with
+          white noise and, in up to a minute or two, for two state variables with finite n, odd g
+          and drift, and white or Langevin noise. It is the first choice there, but not if a
+          parameter of another method is given, nor if `tol` is so loose that ``"monte_carlo"``
+          should be faster or, for one variable and odd g, that ``"corrected"`` meets it.
+        - ``"monte_carlo"`` counts paths. It is the choice for three and four state variables, and
+          for two where the solver misses its tolerance.
+        - ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent).
+        - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
+          order 1/p, p^(-3/2) or p^(-2). For the state y with white noise it has the orders 1 and
+          2, and 3 if g is odd; elsewhere it needs odd g and has the order 1.
     tol : float, optional
-        Absolute error wanted. ``"monte_carlo"``, 1e-2 unless given: it decides, unless these are
-        given, on the number of paths (three standard errors are at most three quarters of `tol`)
-        and on the time step (its bias is a quarter, measured again and refined if it is not).
-        ``"deterministic"``: 1e-7 unless given, or 1e-4 for two variables. ``"corrected"``: any
-        error is returned unless it is given. ``"asymptotic"`` has none.
+        Absolute error wanted. For ``"monte_carlo"`` 1e-2 unless given; the number of paths follows
+        from it (three standard errors are at most three quarters of `tol`) and the time step (its
+        bias is a quarter, measured again and refined if it is not), unless these are given. For
+        ``"deterministic"`` 1e-7 unless given, or 1e-4 for two variables. ``"corrected"`` returns
+        any error unless it is given. ``"asymptotic"`` has none.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -85,13 +85,16 @@ def crossing_probability(
     -------
     xarray.Dataset
         Over `horizon`, with the method among its attributes: `probability` and
-        `probability_error`, for ``"monte_carlo"`` the standard error, with the 95 % confidence
-        limits `lower` and `upper`, and `step_bias`, the bias of the time step as measured by
-        halving it, with its standard error `step_bias_error`; for ``"deterministic"`` the
-        difference of two resolutions, with `survival` and `survival_error`, the complement, for
-        one variable to relative accuracy; for ``"corrected"`` a bound of the distance to the
-        probability at this p, from the size of the next corrections; for ``"asymptotic"`` the
-        error inherited from gamma^2 only, not the distance to a finite p.
+        `probability_error`. The error is
+
+        - of ``"monte_carlo"`` the standard error; the 95 % confidence limits are `lower` and
+          `upper`, and the bias of the time step, as measured by halving it, is `step_bias` with
+          its standard error `step_bias_error`;
+        - of ``"deterministic"`` the difference of two resolutions; the complement of the
+          probability is `survival` with `survival_error`, for one variable to relative accuracy;
+        - of ``"corrected"`` a bound of the distance to the probability at this p, from the size of
+          the next orders;
+        - of ``"asymptotic"`` what it inherits from gamma^2, not the distance to a finite p.
 
     Raises
     ------
@@ -119,7 +122,7 @@ def crossing_probability(
             break
         except ToleranceError as error:
             failed[name] = error
-    else:  # what the solver has reached is the best there is
+    else:  # of all that failed, the solver came closest
         raise failed.get("deterministic", failed[name])
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
@@ -141,10 +144,12 @@ def _by(method, given):
 def _attempts(scene, horizons, p, given):
     """Choose the methods to try in turn, each with its limits.
 
-    Monte Carlo, whose pilot tells how many paths are needed, comes before a solver if it may turn
-    out faster, and is stopped if it does not; it comes last if it may do what the solver could not.
-    So do the corrected formulas, whose errors tell whether they do.
+    Monte Carlo comes before a solver if its pilot, which tells how many paths are needed, may turn
+    out faster; it is stopped if it does not. It comes last where it may meet a tolerance that the
+    solver misses. The corrected formulas come before both, because their errors tell at once
+    whether they suffice.
     """
+    choice = tuning.METHOD_CHOICE
     if "order" in given:
         return [("corrected", {})]
     default = default_tolerance(scene)
@@ -152,27 +157,27 @@ def _attempts(scene, horizons, p, given):
         return [("monte_carlo", {})]
     tol = given.get("tol", default)
     attempts = [("deterministic", {})]
-    if tol >= _SAMPLED:
-        attempts.append(("monte_carlo", {"most": _PATIENCE}))
+    if tol >= choice.sampled_tolerance:
+        attempts.append(("monte_carlo", {"most": choice.sampled_steps}))
     if "tol" not in given:
         return attempts
-    windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(_WINDOW)
+    windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(choice.window)
     pilot, least = least_steps(scene, p * horizons[-1], tol)
 
     def sampled(seconds):
-        most = seconds / _STEP
-        fast = pilot <= _PILOT_SHARE * most and least <= most
+        most = seconds / choice.seconds_of_step
+        fast = pilot <= choice.pilot_share * most and least <= most
         return [("monte_carlo", {"most": most})] if fast else []
 
-    attempts = sampled(windows * _SECONDS[scene.dimension]) + attempts
+    attempts = sampled(windows * choice.seconds_solved[scene.dimension - 1]) + attempts
     covered = scene.is_line and scene.is_odd() and not scene.grows_too_fast
-    if covered and tol * p**2 >= _REACHED:
-        attempts = [*sampled(_FORMULA), ("corrected", {"order": 3}), *attempts]
+    if covered and tol * p**2 >= choice.least_corrected:
+        attempts = [*sampled(choice.seconds_corrected), ("corrected", {"order": 3}), *attempts]
     return attempts
 
 
 def _asymptotic(scene, threshold, horizons, p, seed, threads):
-    """W_star(b / gamma, T), which does not depend on p."""
+    """Evaluate W_star(b / gamma, T), which does not depend on p."""
     mean, uncertainty = stationary_mean(scene, seed, threads)
     gamma2 = limit_variance(scene, seed, threads)
     if abs(mean) > max(1e-8 * np.sqrt(gamma2.value), 5 * uncertainty):
@@ -190,14 +195,14 @@ def _deterministic(scene, threshold, horizons, p, seed, threads, tol=None):
 
 
 def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
-    value, error = corrected_crossing(scene, *threshold, horizons, p, order, tol, seed, threads)
+    value, error = corrected_crossing(scene, threshold, horizons, p, order, tol, seed, threads)
     return {"probability": value, "probability_error": error}, {}
 
 
 # Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
-# the other parameters of `crossing_probability` that it has; it returns the variables over the
-# horizons, as a dict, and the attributes.
-METHODS = {
+# the other parameters of `crossing_probability` that it has. It returns a dict of the variables
+# over the horizons and a dict of attributes.
+METHODS: dict[str, Callable] = {
     "monte_carlo": sampled_crossing,
     "deterministic": _deterministic,
     "asymptotic": _asymptotic,

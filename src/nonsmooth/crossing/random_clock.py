@@ -1,18 +1,22 @@
 """The random clock that disperses Brownian motion as the memory of the velocity does.
 
-The greatest value that t + sqrt(2 b) W(t) has had, b > 0 the spread. Passages at the times s are
-then seen at the times at which it reaches s, which are inverse Gaussian, of the mean s and the
-variance 2 b s: exp(-z s) becomes exp(-w s) with z = w + b w^2.
+The clock shows the greatest value that t + sqrt(2 beta) W(t) has had so far; beta > 0 is its
+spread. It reaches s at an inverse Gaussian time of the mean s and the variance 2 beta s. A passage
+that Brownian motion makes at the time s is seen at that time, and the Laplace transform exp(-z s)
+of its law becomes exp(-w s) with z = w + beta w^2. See `docs/methods/crossing.md`.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 from scipy.special import erfcx
 
-_FARTHEST = 8.2  # standard deviations beyond which less than 1e-15 is left
-_NODES = 80  # of the trapezoidal rule, exact to rounding for what is smooth and ends at 0
+from nonsmooth.crossing import tuning
 
 
-def averaged(function, times, spread):
+def averaged(
+    function: Callable[[np.ndarray], np.ndarray], times: np.ndarray, spread: float
+) -> np.ndarray:
     """Mean of a function at the random clock.
 
     Parameters
@@ -22,7 +26,7 @@ def averaged(function, times, spread):
     times : numpy.ndarray, shape (k,)
         "1"; 0 is returned where they are not positive.
     spread : float
-        b >= 0; the clock is the time itself if it is 0.
+        beta >= 0, "1"; the clock is the time itself if it is 0.
 
     Returns
     -------
@@ -36,12 +40,12 @@ def averaged(function, times, spread):
         mean[late] = function(times[late])
         return mean
     t = times[late, None]
-    root = 2 * np.sqrt(spread * t)  # standard deviations times sqrt(2)
-    reach = _FARTHEST / np.sqrt(2) * root
-    # equal steps of the square root: what the function rises over may be short against the reach
+    root = 2 * np.sqrt(spread * t)  # standard deviation times sqrt(2)
+    reach = tuning.RANDOM_CLOCK.reach / np.sqrt(2) * root
+    # equal steps of the square root: the function may rise over a time much shorter than the reach
     first = np.sqrt(np.maximum(t - reach, 0.0))
-    step = (np.sqrt(t + reach) - first) / _NODES
-    place = first + step * np.arange(1, _NODES + 1)
+    step = (np.sqrt(t + reach) - first) / tuning.RANDOM_CLOCK.nodes
+    place = first + step * np.arange(1, tuning.RANDOM_CLOCK.nodes + 1)
     clock = place**2
     density = np.exp(-(((clock - t) / root) ** 2)) * (
         2 / (np.sqrt(np.pi) * root) - erfcx((clock + t) / root) / (2 * spread)

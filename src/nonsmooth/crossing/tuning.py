@@ -4,6 +4,79 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class MethodChoice:
+    """What tells which method meets a tolerance first; seconds are those of one core."""
+
+    # of a coarse step of a path, with all that comes on top; fitted: benchmarks/requests.py
+    seconds_of_step: float = 4e-9
+    # of the deterministic method for one and two variables, for times that grow by the factor
+    # `window`; fitted: benchmarks/requests.py
+    seconds_solved: tuple[float, float] = (0.4, 8.0)
+    window: float = 20.0
+    seconds_corrected: float = 0.05  # of the corrected formula; fitted: benchmarks/requests.py
+    # least error of the corrected formula of the order 3, times p^2; fitted: benchmarks/requests.py
+    least_corrected: float = 0.03
+    pilot_share: float = 0.1  # of the solver's time, which a pilot may cost; chosen: it is lost
+    # tolerance and steps up to which Monte Carlo replaces a solver that fails; chosen: minutes
+    sampled_tolerance: float = 1e-4
+    sampled_steps: float = 1e11
+
+
+@dataclass(frozen=True)
+class BrownianSeries:
+    """The two series of Brownian crossing, each used where none of its terms cancel."""
+
+    # the odd modes; derived: the next is exp(-(33^2 - 1) z) of the first where L = 10 sqrt(T)
+    modes: range = range(1, 33, 2)
+    # derived: the next is exp(-(11^2 - 1) / 2) of the first where near = far = sqrt(T)
+    images: range = range(5)
+    images_from: float = 100.0  # L^2 / T from which images serve; derived: their sum is rounding
+    reach: float = 100.0  # in sqrt(T); derived: exp(-5000), the chance to get there, is 0 in double
+    exit_modes: range = range(1, 9)  # derived: the next is below exp(-300) for T > L^2
+    exit_turns: int = 8  # derived: the next is below exp(-100) for T < L^2
+
+
+@dataclass(frozen=True)
+class RandomClock:
+    """The mean over the random clock."""
+
+    reach: float = 8.2  # standard deviations; derived: 1e-15 of the law is left beyond
+    # of the trapezoidal rule; chosen: exact to rounding for what is smooth and 0 at both ends
+    nodes: int = 80
+
+
+@dataclass(frozen=True)
+class Orders:
+    """The orders of the corrected formula where the expansion is not small."""
+
+    # order 1 is returned to where the layer is thicker than the distance to the threshold over
+    # this; fitted: errors of one-dimensional scenes, see tests/.../test_corrected_formula.py
+    thin: float = 2.0
+    # largest distance of order 2 from order 3, over that of order 1; fitted: as above
+    nearer: float = 0.5
+    # no slope is taken where a rate is below exp(-300) of the largest; chosen: above underflow
+    deepest: float = 300.0
+    # relative, of difference quotients; chosen: their error, about its square, is 1e-8 of a
+    # correction
+    step: float = 1e-4
+
+
+@dataclass(frozen=True)
+class CorrectedError:
+    """The stated error of the corrected formula, see `corrected_formula`."""
+
+    # a and c for the highest known orders 1, 2 and 3; fitted: errors of a hundred scenes and
+    # intervals of one variable, with a margin
+    next_order: tuple[tuple[float, float], ...] = ((1.0, 0.0), (0.3, 2.0), (0.6, 2.0))
+    # the same for what is taken of order 1, where the layer is thick; fitted: as above
+    thick: float = 1.3
+    # the largest logarithm R of a time is the first plus the second times log(1 + 2 m / b);
+    # fitted: as above
+    longest: tuple[float, float] = (1.5, 2.0)
+    rounding: float = 1e-15  # of every value; derived: some units in the last place of 1
+
+
+@dataclass(frozen=True)
 class Counting:
     """Sizes of the pilots and runs that count paths."""
 
@@ -21,4 +94,9 @@ class Counting:
     attempts: int = 3
 
 
+METHOD_CHOICE = MethodChoice()
+BROWNIAN_SERIES = BrownianSeries()
+RANDOM_CLOCK = RandomClock()
+ORDERS = Orders()
+CORRECTED_ERROR = CorrectedError()
 COUNTING = Counting()

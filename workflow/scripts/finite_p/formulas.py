@@ -1,10 +1,8 @@
 """The asymptotic formula and its corrections against the exact probability, for growing p."""
 
-from dataclasses import asdict
-
 import numpy as np
 
-from nonsmooth.boundary_layer.symmetric_line import expansion
+from nonsmooth.boundary_layer.symmetric_line import layer_constants
 from nonsmooth.scenes.scene import Scene
 from reproduction import artifact
 from reproduction.finite_p import FORMULAS, check_stated_errors, powers_of_p, probabilities
@@ -14,11 +12,11 @@ CONSTANTS = {
     "diffusion": "D = gamma^2 / 2",
     "kappa": "extrapolation length",
     "dispersion": "dispersion B",
-    "corner": "dipole S of the corner between initial time and threshold",
-    "stretch": "kappa_3, by which short waves see another extrapolation length",
-    "poisson": "Poisson solution u at the start",
-    "start": "h at the start",
-    "third": "r at the start",
+    "dipole": "dipole S that the start of time leaves at the threshold",
+    "kappa3": "kappa_3, by which short waves see another extrapolation length",
+    "u": "Poisson solution u at the start",
+    "h": "h at the start",
+    "r": "r at the start",
 }
 
 
@@ -83,12 +81,12 @@ def formulas(scene, threshold, horizons, p, fit_from, exact_tolerance, resolved)
         "slope": ("formula", slopes, "power of p that fits the distance"),
         "slope_error": ("formula", deviations, "largest deviation of a slope between neighbours"),
     }
-    constants, errors = map(asdict, expansion(scene))
-    for found in (constants, errors):
-        found["kappa"] = found.pop("length")
+    constants, errors = layer_constants(scene)
     for name, text in CONSTANTS.items():
-        variables[name] = ((), constants[name], text)
-        variables[f"{name}_error"] = ((), errors[name], "difference of two polynomial degrees")
+        # kappa and the dipole are pairs, equal for odd g
+        value, uncertainty = (float(np.max(getattr(c, name))) for c in (constants, errors))
+        variables[name] = ((), value, text)
+        variables[f"{name}_error"] = ((), uncertainty, "difference of two polynomial degrees")
     return artifact.dataset(
         "Corrected asymptotic formulas",
         f"crossing probabilities of {scene}, b = {threshold}",

@@ -1,0 +1,76 @@
+"""The constants of the layer at a threshold, as the corrected formulas use them.
+
+`docs/methods/boundary_layer.md` derives them. A is the generator, u the solution of the Poisson
+equation A u = -g, and angle brackets in the manual are means under the invariant measure.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class LayerConstants:
+    """Constants of a scene, or their errors; what is not known is None.
+
+    For odd g both thresholds have the same kappa and the same dipole, and the skewness is 0.
+
+    Attributes
+    ----------
+    diffusion : float
+        D = gamma^2 / 2.
+    kappa : (float, float)
+        Extrapolation lengths of the lower and of the upper threshold.
+    u : float
+        Value at the start of u, the mean of int g after a long time.
+    skewness : float
+        C = E[g u^2]. The third cumulant of int_0^t g grows like 6 C t.
+    dispersion : float or None
+        B = E[g r]. The logarithm of E exp(q int_0^t g) grows like (D q^2 + C q^3 + B q^4) t.
+    dipole : (float, float) or None
+        S at the lower and at the upper threshold: a source that the start of time leaves there.
+    h : float or None
+        Value at the start of h, A h = D - g u.
+    kappa3 : float or None
+        A wave of the wave number k has the extrapolation length kappa + kappa3 k^2 / p; for odd g.
+    r : float or None
+        Value at the start of r, A r = D u + C - g h.
+    """
+
+    diffusion: float
+    kappa: tuple[float, float]
+    u: float
+    skewness: float = 0.0
+    dispersion: float | None = None
+    dipole: tuple[float, float] | None = None
+    h: float | None = None
+    kappa3: float | None = None
+    r: float | None = None
+
+    @property
+    def order(self) -> int:
+        """The highest order of the corrected formula that the known constants suffice for."""
+        if self.dispersion is None:
+            return 1
+        return 2 if self.kappa3 is None else 3
+
+    def largest(self) -> float:
+        """Return the largest absolute value of all known constants."""
+        known = [value for value in vars(self).values() if value is not None]
+        return float(np.max(np.abs(np.hstack(known))))
+
+    def distance(self, other: "LayerConstants") -> "LayerConstants":
+        """Return the absolute differences to constants of which the same are known."""
+        return LayerConstants(
+            *(
+                _difference(value, reference)
+                for value, reference in zip(vars(self).values(), vars(other).values(), strict=True)
+            )
+        )
+
+
+def _difference(value, reference):
+    if value is None:
+        return None
+    difference = np.abs(np.subtract(value, reference)).tolist()
+    return tuple(difference) if isinstance(value, tuple) else difference

@@ -1,0 +1,80 @@
+"""The constants of a scene's boundary layer, by the best method that applies."""
+
+from functools import lru_cache
+
+from nonsmooth.boundary_layer import asymmetric_line, symmetric_line, two_variables
+from nonsmooth.boundary_layer.constants import LayerConstants
+from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
+from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.asymptotic_variance import limit_variance
+
+
+def highest_order(scene: Scene) -> int:
+    """Return the order of the corrected formula that `layer_constants` will suffice for."""
+    if not scene.is_line:
+        return 1
+    return 3 if scene.is_odd() else 2
+
+
+def solved_constants(
+    scene: Scene, tol: float | None = None
+) -> tuple[LayerConstants, LayerConstants] | None:
+    """Compute the constants without Monte Carlo.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float, optional
+        Absolute error wanted, "1"; 1e-8 for one variable and 1e-3 for two, unless given.
+
+    Returns
+    -------
+    constants, errors : LayerConstants
+        None instead of both if the scene needs Monte Carlo.
+
+    Raises
+    ------
+    SceneError
+        If g is not centred, or gamma^2 is 0.
+    ToleranceError
+        If `tol` is not met; the message has the best value and its error.
+    """
+    for method in (symmetric_line, asymmetric_line, two_variables):
+        if method.applies(scene):
+            return method.layer_constants(scene, tol)
+    return None
+
+
+@lru_cache(maxsize=16)  # the same for every p and interval
+def layer_constants(
+    scene: Scene, seed: int | tuple = 0, threads: int | None = None
+) -> tuple[LayerConstants, LayerConstants]:
+    """Compute the constants, by Monte Carlo where nothing else applies.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the state y and white noise, or with odd g.
+    seed, threads
+        Of Monte Carlo: int or tuple; all cores unless given.
+
+    Returns
+    -------
+    constants, errors : LayerConstants
+
+    Raises
+    ------
+    SceneError, ToleranceError
+        As `extrapolation_length`.
+    """
+    solved = solved_constants(scene)
+    if solved is not None:
+        return solved
+    kappa = sampled_length(scene, seed=labelled(seed, "length"), threads=threads)
+    gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
+    u = sampled_poisson(scene, labelled(seed, "start"), threads)
+    return (
+        LayerConstants(gamma2.value / 2, (kappa.value, kappa.value), u.value),
+        LayerConstants(gamma2.error / 2, (kappa.error, kappa.error), u.error),
+    )
