@@ -1,4 +1,4 @@
-"""The corrected formulas against the spectral values."""
+"""The corrected formulas against the deterministic method."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -21,12 +21,12 @@ ONE_SIDED, UNEQUAL = (-np.inf, 0.6), (-0.3, 0.6)
 
 @lru_cache
 def exact(threshold, p, scene, horizons, tol):
-    """Spectral values."""
+    """Values of the deterministic method."""
     return ns.crossing_probability(scene, threshold, horizons, p, method="deterministic", tol=tol)
 
 
 def errors(threshold, p, scene, formula, horizons=HORIZONS, tol=1e-7):
-    """Distances to the spectral values, which are no larger than stated."""
+    """Distances to the deterministic values, which are no larger than stated."""
     found = ns.crossing_probability(scene, threshold, horizons, p, **formula)
     reference = exact(threshold, p, scene, horizons, tol)
     distance = np.abs(found.probability - reference.probability).values
@@ -60,7 +60,7 @@ class TestOrders:
         """For every kind of threshold, from the origin and from elsewhere.
 
         Order 3 is exact against order 2, whose own error bends more: it is followed to p = 1e6,
-        where no spectral value resolves it.
+        where no deterministic value resolves it.
         """
         assert self.slope(threshold, scene, ORDERS[0]) == pytest.approx(-1, abs=0.2)
         assert self.slope(threshold, scene, ORDERS[2]) == pytest.approx(-2, abs=0.2)
@@ -90,7 +90,7 @@ class TestSmallScales:
         ("p", "value"), [(1, 0.1606775), (10, 0.3674251), (100, 0.4595991), (1000, 0.4902812)]
     )
     def test_published_values(self, p, value):
-        """METHODS, section 2, with seven digits: the errors hold, and at p = 1 are large."""
+        """An early prototype's, with seven digits: the errors hold, and at p = 1 are large."""
         for formula in ORDERS:
             found = ns.crossing_probability(FRICTION, 0.6, [2.0], p, **formula)
             error = found.probability_error[0]
@@ -151,7 +151,7 @@ class TestSmallScales:
         ns.crossing_probability(FRICTION, 0.6, [1.0], 100, method="corrected", tol=1e-2)
 
     def test_a_start_beyond_the_threshold(self):
-        """E u is larger than b + kappa at a small p: no value, instead of a traceback."""
+        """The start is worth more than b + kappa at a small p: no value, and no traceback."""
         found = ns.crossing_probability(
             replace(FRICTION, start={"y": 3.0}), 0.01, [1.0], 0.01, method="corrected"
         )
@@ -162,5 +162,9 @@ def test_orders_need_constants():
     """The message names the cure."""
     with pytest.raises(ns.NonsmoothError, match="order=2"):
         ns.crossing_probability(SKEWED, 0.6, [1.0], method="corrected", order=3)
+    with pytest.raises(ns.NonsmoothError, match="use order=1 or method='monte_carlo'"):
+        ns.crossing_probability(
+            ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
+        )
     with pytest.raises(ns.NonsmoothError, match="orders 1, 2 and 3"):
         ns.crossing_probability(FRICTION, 0.6, [1.0], method="corrected", order=4)

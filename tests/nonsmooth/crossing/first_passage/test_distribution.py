@@ -1,6 +1,5 @@
-"""First passage by Case modes, and the Milne problem."""
+"""First passage of one variable by Case modes."""
 
-import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import simpson
@@ -8,9 +7,6 @@ from scipy.interpolate import CubicSpline
 from scipy.special import erfc
 
 import nonsmooth as ns
-from nonsmooth.boundary_layer.asymmetric_line import walls
-from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
-from nonsmooth.boundary_layer.symmetric_line import expansion
 from nonsmooth.crossing.first_passage import inversion as inversion
 from nonsmooth.crossing.first_passage.contours import hyperbola
 from nonsmooth.errors import AssumptionWarning
@@ -35,150 +31,19 @@ class TestContour:
         assert np.max(np.abs(value - erfc(0.5 / np.sqrt(times)))) < np.exp(-rate * count)
 
 
-class TestMilne:
-    """kappa and the constants of order 2 against closed forms."""
-
-    def test_ornstein_uhlenbeck(self):
-        """Without friction kappa = -zeta(1/2) sigma / (sqrt(2) C_b^(3/2)) (Marshall & Watson)."""
-        for damping in (0.1, 0.3, 1.0, 5.0):
-            scene = ns.Scene("elasto_plastic", potential="0", damping=damping)
-            found = ns.extrapolation_length(scene)
-            exact = -float(mpmath.zeta(0.5)) / np.sqrt(2) / damping**1.5
-            assert abs(found.value - exact) <= found.error + 1e-9
-            assert found.error <= 1e-8
-
-    def test_stretch_of_ornstein_uhlenbeck(self):
-        """Waves see the phase -sum atan(k / mu), with mu^2 = 2 C_b^3 j - k^2 (Marshall & Watson).
-
-        Its cubic term has kappa_3 = -zeta(3/2) sigma^3 / (12 sqrt(2) C_b^(9/2)); there is no
-        dispersion.
-        """
-        for damping in (0.3, 1.0, 5.0):
-            found, errors = expansion(ns.Scene("elasto_plastic", potential="0", damping=damping))
-            exact = -float(mpmath.zeta(1.5)) / 12 / np.sqrt(2) / damping**4.5
-            assert abs(found.stretch - exact) <= 2 * errors.stretch + 1e-9 * abs(exact)
-            assert abs(found.dispersion) <= 2 * errors.dispersion + 1e-12 / damping**6
-
-    def test_published_constants(self):
-        """METHODS, section 3, whose D and B are halves of sums with ten digits."""
-        found, errors = expansion(FRICTION)
-        for name, value in (
-            ("diffusion", 0.06884820644975),
-            ("length", 0.2911259630),
-            ("dispersion", 0.00369027612),
-            ("corner", -0.0360711815),
-            ("start", -0.0188637460),
-        ):
-            assert abs(getattr(found, name) - value) < 2e-9, name
-            assert getattr(errors, name) < 1e-8
-
-    @pytest.mark.parametrize("n", [1.0, 1e4, 1e6, np.inf])
-    def test_diffusion_is_half_gamma2(self, n):
-        """D against the quadrature of gamma^2."""
-        found, errors = expansion(FRICTION.with_n(n))
-        gamma2 = ns.asymptotic_variance(FRICTION.with_n(n)).value
-        assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
-
-    def test_two_lengths_of_a_g_without_symmetry(self, monkeypatch):
-        """Those of the mirrored scene swapped, D of the quadrature; equal ones where g is odd."""
-        lower, upper = ns.extrapolation_length(SKEWED)
-        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
-        other_lower, other_upper = ns.extrapolation_length(mirrored)
-        assert abs(lower.value - other_upper.value) <= lower.error + other_upper.error + 1e-12
-        assert abs(upper.value - other_lower.value) <= upper.error + other_lower.error + 1e-12
-        found, errors = walls(SKEWED)
-        gamma2 = ns.asymptotic_variance(SKEWED).value
-        assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
-        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)  # the whole grid
-        for length in ns.extrapolation_length(FRICTION):
-            assert abs(length.value - 0.2911259630) < 2e-9
-
-    def test_needs_a_centred_g(self):
-        """The message has the mean."""
-        with pytest.raises(ns.NonsmoothError, match="subtract"):
-            ns.extrapolation_length(ns.Scene("friction", observable="y + abs(y)/2"))
-
-    def test_refuses_what_it_cannot(self):
-        """Colored noise has no such solver."""
-        with pytest.raises(ns.NonsmoothError, match="white noise"):
-            expansion(ns.Scene("friction", "langevin"))
-        with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
-            ns.crossing_probability(
-                ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
-            )
-        with pytest.raises(ns.NonsmoothError, match="no extrapolation length"):
-            ns.extrapolation_length(ns.Scene("obstacle", potential="x**2/2"))
-
-
-class TestMilneOfTwoVariables:
-    """kappa where the generator is not self-adjoint."""
-
-    def test_ornstein_uhlenbeck(self):
-        """A spring too weak to matter: the closed form of one variable, by the solver of two."""
-        found = ns.extrapolation_length(ns.Scene("elasto_plastic", potential="1e-9*x**2"))
-        exact = -float(mpmath.zeta(0.5)) / np.sqrt(2)
-        # the spring adds of the order of its stiffness
-        assert abs(found.value - exact) <= found.error + 1e-8
-        assert found.error <= 1e-3
-
-    def test_yielding_displacement(self):
-        """The displacement crosses b when the plastic strain crosses b - 1, for it yields at x = 1.
-
-        Exactly so at n = inf; at a finite n, x passes 1 by y/n, with y of order 1.
-        """
-        lengths = [
-            ns.extrapolation_length(
-                ns.Scene("elasto_plastic", potential="x**2/2", n=1e4, observable=g), tol=1e-2
-            )
-            for g in ("y", "plastic_strain_rate")
-        ]
-        total, plastic = lengths
-        assert abs(total.value - (plastic.value - 1)) <= total.error + plastic.error + 1e-4
-
-    def test_corrected_formula(self):
-        """Against Monte Carlo, where the plain formula is off by 0.1; 4.5 sigma, and O(1/p)."""
-        scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
-        problem = scene, 0.6, [2.0], 100
-        found = ns.crossing_probability(*problem, method="corrected")
-        sampled = ns.crossing_probability(*problem, step=0.1, paths=4000, seed=1)
-        sigma = np.hypot(sampled.probability_error, sampled.step_bias_error)
-        difference = found.probability - sampled.probability + sampled.step_bias
-        order = (0.42 / 0.6) ** 2 / 100  # (kappa / b)^2 / p
-        assert np.all(np.abs(difference) <= 4.5 * sigma + order)
-        with pytest.raises(ns.NonsmoothError, match="use order=1"):
-            ns.crossing_probability(*problem, method="corrected", order=2)
-
-
 def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
-    """Spectral values."""
+    """Values of the deterministic method."""
     return ns.crossing_probability(scene, threshold, horizons, p, method="deterministic", tol=tol)
 
 
-class TestSampledLength:
-    """kappa by Monte Carlo."""
-
-    def test_of_dry_friction(self):
-        """Within the stated error, two standard errors and more; the seed is fixed."""
-        found = sampled_length(FRICTION, seed=1)
-        assert abs(found.value - 0.2911259630) < found.error
-        assert found.error < 0.2 * found.value
-
-    def test_poisson_solution_at_a_start(self):
-        """That of discrete ordinates, within the stated error, two standard errors and more."""
-        scene = ns.Scene("friction", start={"y": 0.5})
-        found, exact = sampled_poisson(scene, seed=1), expansion(scene)[0].poisson
-        assert abs(found.value - exact) < found.error
-        assert found.error < 0.3 * exact
-
-
-class TestSpectral:
+class TestDeterministic:
     """First passage against published values, Monte Carlo, and itself in the tails."""
 
     @pytest.mark.parametrize(
         ("p", "value"), [(1, 0.1606775), (10, 0.3674251), (100, 0.4595991), (1000, 0.4902812)]
     )
     def test_published_values(self, p, value):
-        """METHODS, section 2."""
+        """Values of an early prototype on another grid, with seven digits."""
         found = exact(0.6, [2.0], p)
         assert abs(found.probability[0] - value) < found.probability_error[0] + DIGITS
 

@@ -1,0 +1,83 @@
+"""The constants of one variable and a g without symmetry."""
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.boundary_layer import symmetric_line
+from nonsmooth.boundary_layer.asymmetric_line import layer_constants
+from nonsmooth.line.eigenfunctions import spectrum
+from nonsmooth.line.quadrature import mean as stationary_mean
+
+# centred; 4e-16 is the error of the mean
+SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079", start={"y": 0.2})
+
+
+@pytest.fixture(scope="module")
+def skewed():
+    """Constants of a g without symmetry, and their errors."""
+    return layer_constants(SKEWED)
+
+
+def test_difference_of_the_extrapolation_lengths(skewed):
+    """The flux of the two Milne problems' product gives kappa_+ - kappa_- = C/D."""
+    found, _ = skewed
+    lower, upper = found.kappa
+    assert upper - lower == pytest.approx(found.skewness / found.diffusion, abs=1e-12)
+    assert found.order == 2
+
+
+def test_cumulants(skewed):
+    """D, C and B are the first derivatives of the largest eigenvalue of A + q g at q = 0."""
+    found, _ = skewed
+    s = spectrum(SKEWED, 10)
+
+    def largest(q):
+        return np.linalg.eigvalsh(q * s.product - np.diag(s.rates))[-1]
+
+    # polynomials in q: what is left out is of the order 0.3^5 of the largest
+    q = 0.3 * np.cos(np.pi * (np.arange(16) + 0.5) / 16)
+    fit = np.polynomial.Polynomial.fit(q, [largest(at) for at in q], 12).convert().coef
+    expected = [0, 0, found.diffusion, found.skewness, found.dispersion]
+    assert fit[:5] == pytest.approx(expected, abs=1e-8)
+
+
+def test_limit_of_odd_g():
+    """Constants of an odd g, as its half grid has them, if an even part is added that vanishes."""
+    odd, _ = symmetric_line.layer_constants(ns.Scene("friction", n=1, start={"y": 0.5}))
+    scene = ns.Scene("friction", n=1, observable="y + 1e-6*(abs(y) - 0.3)", start={"y": 0.5})
+    mean = float(stationary_mean(scene)[0])
+    scene = ns.Scene(
+        "friction", n=1, observable=f"y + 1e-6*(abs(y) - 0.3) - ({mean!r})", start={"y": 0.5}
+    )
+    found, _ = layer_constants(scene, 1e-6)
+    assert found.dipole == pytest.approx(odd.dipole, abs=2e-5)
+    assert found.dispersion == pytest.approx(odd.dispersion, abs=2e-5)
+    assert found.h == pytest.approx(odd.h, abs=2e-5)
+
+
+def test_mirrored_scene():
+    """Its extrapolation lengths are swapped, within the errors; D is that of the quadrature."""
+    scene = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
+    mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
+    for side, other in (("lower", "upper"), ("upper", "lower")):
+        kappa = ns.extrapolation_length(scene, side=side)
+        swapped = ns.extrapolation_length(mirrored, side=other)
+        assert abs(kappa.value - swapped.value) <= kappa.error + swapped.error + 1e-12
+    found, errors = layer_constants(scene)
+    gamma2 = ns.asymptotic_variance(scene).value
+    assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
+
+
+def test_odd_g_on_the_whole_grid(monkeypatch):
+    """Kappa is that of the half grid on both sides."""
+    monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
+    for side in ("lower", "upper"):
+        found = ns.extrapolation_length(ns.Scene("friction"), side=side)
+        assert abs(found.value - 0.2911259630) < 2e-9
+
+
+def test_needs_a_centred_g():
+    """The message has the mean."""
+    with pytest.raises(ns.NonsmoothError, match="subtract"):
+        ns.extrapolation_length(ns.Scene("friction", observable="y + abs(y)/2"))

@@ -1,0 +1,19 @@
+"""The public function for kappa; its values are tested with the methods that compute them."""
+
+import pytest
+
+import nonsmooth as ns
+
+
+def test_both_sides_of_an_odd_g():
+    """They are the same."""
+    lower, upper = (
+        ns.extrapolation_length(ns.Scene("friction"), side=side) for side in ("lower", "upper")
+    )
+    assert (lower.value, lower.error) == (upper.value, upper.error)
+
+
+def test_unknown_side():
+    """The message has the choices."""
+    with pytest.raises(ns.NonsmoothError, match="choose 'lower' or 'upper'"):
+        ns.extrapolation_length(ns.Scene("friction"), side="left")

@@ -1,0 +1,20 @@
+"""kappa and the Poisson solution by Monte Carlo."""
+
+import nonsmooth as ns
+from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
+from nonsmooth.boundary_layer.symmetric_line import layer_constants
+
+
+def test_kappa_of_dry_friction():
+    """Within the stated error, two standard errors and more; the seed is fixed."""
+    found = sampled_length(ns.Scene("friction"), seed=1)
+    assert abs(found.value - 0.2911259630) < found.error
+    assert found.error < 0.2 * found.value
+
+
+def test_poisson_solution_at_a_start():
+    """That of discrete ordinates, within the stated error, two standard errors and more."""
+    scene = ns.Scene("friction", start={"y": 0.5})
+    found, exact = sampled_poisson(scene, seed=1), layer_constants(scene)[0].u
+    assert abs(found.value - exact) < found.error
+    assert found.error < 0.3 * exact

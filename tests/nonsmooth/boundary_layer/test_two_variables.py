@@ -1,0 +1,50 @@
+"""kappa of two variables, where the generator is not self-adjoint."""
+
+import mpmath
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+
+
+def test_ornstein_uhlenbeck():
+    """A spring too weak to matter: the closed form of one variable, by the solver of two."""
+    found = ns.extrapolation_length(ns.Scene("elasto_plastic", potential="1e-9*x**2"))
+    exact = -float(mpmath.zeta(0.5)) / np.sqrt(2)
+    # the spring adds of the order of its stiffness
+    assert abs(found.value - exact) <= found.error + 1e-8
+    assert found.error <= 1e-3
+
+
+def test_yielding_displacement():
+    """The displacement crosses b when the plastic strain crosses b - 1, for it yields at x = 1.
+
+    Exactly so at n = inf; at a finite n, x passes 1 by y/n, with y of order 1.
+    """
+    total, plastic = (
+        ns.extrapolation_length(
+            ns.Scene("elasto_plastic", potential="x**2/2", n=1e4, observable=g), tol=1e-2
+        )
+        for g in ("y", "plastic_strain_rate")
+    )
+    assert abs(total.value - (plastic.value - 1)) <= total.error + plastic.error + 1e-4
+
+
+def test_corrected_formula():
+    """Against Monte Carlo, where the plain formula is off by 0.1; 4.5 sigma, and O(1/p)."""
+    scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
+    problem = scene, 0.6, [2.0], 100
+    found = ns.crossing_probability(*problem, method="corrected")
+    sampled = ns.crossing_probability(*problem, step=0.1, paths=4000, seed=1)
+    sigma = np.hypot(sampled.probability_error, sampled.step_bias_error)
+    difference = found.probability - sampled.probability + sampled.step_bias
+    order = (0.42 / 0.6) ** 2 / 100  # (kappa / b)^2 / p
+    assert np.all(np.abs(difference) <= 4.5 * sigma + order)
+    with pytest.raises(ns.NonsmoothError, match="use order=1"):
+        ns.crossing_probability(*problem, method="corrected", order=2)
+
+
+def test_bounded_observable():
+    """Velocities whose integral stays bounded have gamma^2 = 0, and no extrapolation length."""
+    with pytest.raises(ns.NonsmoothError, match="no extrapolation length"):
+        ns.extrapolation_length(ns.Scene("obstacle", potential="x**2/2"))
