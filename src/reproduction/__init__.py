@@ -14,6 +14,8 @@ The workflow's scripts call this package, and it calls the library `nonsmooth`. 
     `validate`: errors of the configuration in one line.
 `printed`
     `printed_values`, `numbered`: what the paper prints, and how it numbers its equations.
+`paper_values`
+    `paper_values`: the numbers that the text of the paper quotes, spelt as they stand there.
 `plots`, `tables`
     `draw` and the style of the figures; `typeset` and how numbers are spelled.
 `gamma2`

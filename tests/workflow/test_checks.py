@@ -16,7 +16,7 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins
 from nonsmooth.theory.ergodicity import Bound
-from reproduction import errata
+from reproduction.errata.record import Erratum, Evidence
 
 TAU = np.array([0.1, 1.0, 10.0])
 SCRIPTS = ROOT / "workflow" / "scripts"
@@ -107,7 +107,7 @@ def test_large_bias_fails(changes, message):
 @pytest.mark.parametrize(("printed", "mended"), [(1.0, 1.0), (2.0, 3.0)])
 def test_a_wrong_erratum_fails(monkeypatch, printed, mended):
     """What is printed is right, or what is mended is wrong."""
-    wrong = errata.Erratum("1", "", "", "", lambda: errata.Evidence("", printed, mended, 1.0))
+    wrong = Erratum("1", "", "", "", lambda: Evidence("", printed, mended, 1.0))
     monkeypatch.setitem(evaluate.__globals__, "ERRATA", [wrong])
     with pytest.raises(CheckError, match="erratum 1: printed"):
         evaluate()
