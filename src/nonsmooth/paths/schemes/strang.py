@@ -216,10 +216,24 @@ def _observable_code(scene):
     return _VELOCITY if scene.observable_expression == symbols.y else _FORMULA
 
 
-def gaussian_step(matrix, sigma, step):
-    """Transition less identity, and Cholesky factor, of d r = matrix r dt + sigma e_1 dW.
+def gaussian_step(matrix: np.ndarray, sigma: float, step: float) -> tuple[tuple, tuple]:
+    """Exact Gaussian step of d r = matrix r dt + sigma e_1 dW.
 
-    By Van Loan (1978) for short steps, from the stationary covariance for long ones.
+    Its covariance is found as in Van Loan (1978) for short steps, and from the stationary one for
+    long steps.
+
+    Parameters
+    ----------
+    matrix : numpy.ndarray, shape (1, 1) or (2, 2)
+    sigma : float
+    step : float
+
+    Returns
+    -------
+    transition : tuple of 4 floats
+        exp(matrix step) less the identity, row by row.
+    factor : tuple of 3 floats
+        Lower triangle of the Cholesky factor of the covariance.
     """
     size = len(matrix)
     diffusion = np.zeros((size, size))
