@@ -24,6 +24,8 @@ lint: env ## style and structure of the sources
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/snakemake --lint
+	$(BIN)/lint-imports
+	$(BIN)/mypy
 
 format: env ## put the sources into the style that lint asks for
 	$(BIN)/ruff check --fix .

@@ -1,28 +1,26 @@
 """Random vibration of non-smooth mechanical systems.
 
-The functions below are the public interface; they are imported when first used.
+Damped oscillators that yield, stick or hit obstacles under white or colored noise: how the integral
+of an observable spreads, and with which probability it crosses a threshold. The non-smooth force is
+penalized by n; most functions also take the limit n = inf.
+
+What is studied: `Scene`, with the noises `White`, `Langevin`, `Hamiltonian`, `OrnsteinUhlenbeck`,
+`KanaiTajimi`. What can be asked of a scene:
+
+- `asymptotic_variance`: gamma^2, and `variance`: the variance of the integral at given times
+- `invariant_density`, `spectral_gap`: where the state is in the long run, and how soon
+- `simulate`: paths, or the moments of the integral
+- `crossing_probability`: of a threshold by the integral; `extrapolation_length`: kappa, by which
+  the threshold appears farther away
+- `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`: the limit, in which
+  the integral is a Brownian motion
+
+Results are `Estimate` objects or xarray datasets, with errors; errors raised are `NonsmoothError`.
+The names above are imported when first used; `__init__.pyi` says from where.
 """
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
-    __name__,
-    submod_attrs={
-        "crossing.brownian": [
-            "brownian_crossing",
-            "brownian_first_passage_density",
-            "brownian_survival",
-        ],
-        "crossing.probability": ["crossing_probability"],
-        "statistics.invariant_density": ["invariant_density"],
-        "errors": ["NonsmoothError"],
-        "estimate": ["Estimate"],
-        "boundary_layer.extrapolation_length": ["extrapolation_length"],
-        "scenes.noises": ["Hamiltonian", "KanaiTajimi", "Langevin", "OrnsteinUhlenbeck", "White"],
-        "scenes.scene": ["Scene"],
-        "statistics.spectral_gap": ["spectral_gap"],
-        "paths.simulation": ["simulate"],
-        "statistics.asymptotic_variance": ["asymptotic_variance"],
-        "statistics.variance": ["variance"],
-    },
-)
+__version__ = "0.2.0"
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -2,12 +2,12 @@
 
 import hashlib
 from collections.abc import Mapping
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+import nonsmooth
 from nonsmooth.errors import ArtifactError
 from reproduction.files import whole
 
@@ -57,7 +57,7 @@ def provenance(rule: str, parameters: Mapping, lock: str | Path = "environment-l
     """
     arguments = ", ".join(f"{key}={value!r}" for key, value in sorted(parameters.items()))
     digest = hashlib.sha256(Path(lock).read_bytes()).hexdigest()[:16]
-    return f"rule {rule}({arguments}); {_MARK} {version(_MARK)}; lock sha256 {digest}"
+    return f"rule {rule}({arguments}); {_MARK} {nonsmooth.__version__}; lock sha256 {digest}"
 
 
 def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
@@ -95,7 +95,7 @@ def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
         "history": history,
         "keywords": "random vibration, non-smooth mechanics, penalization, threshold crossing",
         "license": "MIT",
-        "source": f"{_MARK} {version(_MARK)}",
+        "source": f"{_MARK} {nonsmooth.__version__}",
         "summary": dataset.attrs["summary"],
         "title": dataset.attrs["title"],
     }

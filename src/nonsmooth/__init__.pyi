@@ -1,0 +1,20 @@
+from .boundary_layer.extrapolation_length import extrapolation_length as extrapolation_length
+from .crossing.brownian import brownian_crossing as brownian_crossing
+from .crossing.brownian import brownian_first_passage_density as brownian_first_passage_density
+from .crossing.brownian import brownian_survival as brownian_survival
+from .crossing.probability import crossing_probability as crossing_probability
+from .errors import NonsmoothError as NonsmoothError
+from .estimate import Estimate as Estimate
+from .paths.simulation import simulate as simulate
+from .scenes.noises import Hamiltonian as Hamiltonian
+from .scenes.noises import KanaiTajimi as KanaiTajimi
+from .scenes.noises import Langevin as Langevin
+from .scenes.noises import OrnsteinUhlenbeck as OrnsteinUhlenbeck
+from .scenes.noises import White as White
+from .scenes.scene import Scene as Scene
+from .statistics.asymptotic_variance import asymptotic_variance as asymptotic_variance
+from .statistics.invariant_density import invariant_density as invariant_density
+from .statistics.spectral_gap import spectral_gap as spectral_gap
+from .statistics.variance import variance as variance
+
+__version__: str
