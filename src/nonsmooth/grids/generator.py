@@ -1,4 +1,4 @@
-"""The generator A_n (eq. inf-gen) of any scene on a tensor grid of spectral elements.
+"""The generator A_n (eq. (9) of the paper) of any scene on a tensor grid of spectral elements.
 
 Everything is read from the scene's own drift: coefficients are evaluated at the nodes, and on the
 faces of discontinuous elements, where their sign decides from which side a value is taken.

@@ -8,7 +8,7 @@ ODD, EVEN = -1, 1
 
 
 class PoissonSolver(Protocol):
-    """Solver of -A u = f - E f (eq. poisson of the paper) on one tensor grid.
+    """Solver of -A u = f - E f (eq. (12) of the paper) on one tensor grid.
 
     A is the generator of a scene, discretised on the grid's axes; E is the mean in the invariant
     measure of the discretised A. A solver is made for one scene and one grid and may be asked for

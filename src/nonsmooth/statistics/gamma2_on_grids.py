@@ -1,4 +1,4 @@
-"""gamma^2 = 2 E[g u] with u the Poisson solution of g (Theorem thm3), on tensor grids.
+"""gamma^2 = 2 E[g u] with u the Poisson solution of g (Theorem 6), on tensor grids.
 
 For two variables the grids are refined in both of them first, which is the cheapest if few levels
 do. Otherwise, and for more variables, the combination technique finds out how fine each variable

@@ -1,4 +1,4 @@
-"""The invariant density of Z^n (Theorem thm1) and its marginals, without Monte Carlo.
+"""The invariant density of Z^n (Theorem 4) and its marginals, without Monte Carlo.
 
 Dry friction and obstacles with white noise have closed forms. Elsewhere the masses of the
 discretised invariant measure at the nodes of a tensor grid are divided by the nodes' weights.

@@ -32,7 +32,7 @@ from nonsmooth.statistics import tuning
 
 
 def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np.ndarray]:
-    """Solve for w(start, tau) and v(start, tau), eq. (defvgyt).
+    """Solve for w(start, tau) and v(start, tau), eq. (36) of the paper.
 
     Parameters
     ----------

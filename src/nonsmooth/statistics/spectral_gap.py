@@ -1,4 +1,4 @@
-"""The spectral gap of the generator, the rate at which correlations decay (Theorem thm2)."""
+"""The spectral gap of the generator, the rate at which correlations decay (Theorem 5)."""
 
 import math
 import time

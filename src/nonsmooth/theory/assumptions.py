@@ -1,8 +1,8 @@
-"""The constants of the paper's standing assumptions (HU1)-(HU5), (cond-boldvprime), (T117), (T120).
+"""The constants of the paper's standing assumptions (HU1)-(HU5), (2), (T117) and (T120).
 
-The assumptions say that constants exist. Here they are computed for given U, v, H and F, whose
-suprema are taken over a fine grid up to 1e6 and refined; a smaller lambda, r or delta~ and a
-larger beta or M would do as well.
+The assumptions say that constants exist. Here they are computed for given U, v, H and F. Suprema
+are taken over a fine grid up to 1e6 and refined. Smaller lambda, r or delta~ and larger beta or M
+would do as well.
 """
 
 from dataclasses import dataclass
@@ -15,19 +15,16 @@ from scipy.optimize import minimize_scalar
 
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.noises import Hamiltonian, Langevin
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, zeta
-
-_LINE = np.unique(np.concatenate([np.geomspace(1e-6, 1e6, 1201), np.linspace(0, 20, 801)]))
-_LINE = np.concatenate([-_LINE[::-1], [0.0], _LINE])
-_FAR = np.array([-1e6, 1e6])
-_POSITIVE = 1e-3  # the assumptions want beta > 0; any larger value is one too
-_SAFETY = 1e-9  # relative, far above the error of the suprema
+from nonsmooth.theory import tuning
 
 
 @dataclass(frozen=True)
 class Confinement:
-    """Constants of (HU2), (HU3), (HU5) and of Claim S_1 for U (U_n for obstacles).
+    """Constants of (HU2), (HU3), (HU5) and of Claim 7 for U (U_n for obstacles).
 
     Attributes
     ----------
@@ -49,18 +46,18 @@ class Confinement:
     shift: float
 
     @property
-    def lambda_3(self):
+    def lambda_3(self) -> float:
         """Of (HU5): x U' >= lambda_3 (U + x^2) - beta_3."""
         return self.lambda_1 * self.lambda_2 / (1 + self.lambda_1)
 
     @property
-    def beta_3(self):
+    def beta_3(self) -> float:
         """Of (HU5)."""
         return self.beta_2 + self.lambda_2 * self.beta_1 / (1 + self.lambda_1)
 
     @property
-    def beta_4(self):
-        """Of Claim S_1: sign(x) U'(x) >= -beta_4."""
+    def beta_4(self) -> float:
+        """Of Claim 7: sign(x) U'(x) >= -beta_4."""
         return max(self.beta_3, self.steepest)
 
 
@@ -83,18 +80,18 @@ class Dissipation:
     cross: float
 
     @property
-    def energy(self):
+    def energy(self) -> np.ndarray:
         """Matrix of the quadratic form H + R in (eta, zeta)."""
         return np.array([[self.stiffness, self.cross], [self.cross, 1.0]]) / 2
 
     @property
-    def decay(self):
+    def decay(self) -> np.ndarray:
         """Matrix of the quadratic part of -(1/2 d_zetazeta + B_1 d_zeta + B_2 d_eta)(H + R)."""
         c, gamma = self.cross, self.damping
         return np.array([[c * self.stiffness, c * gamma / 2], [c * gamma / 2, gamma - c]])
 
 
-def potential(scene):
+def potential(scene: Scene) -> tuple[sympy.Expr, sympy.Expr]:
     """Return U (U_n for obstacles, Table 3) and its derivative, expressions in x."""
     model = scene.mechanics
     number = {penalization: sympy.Float(scene.n)}
@@ -104,16 +101,27 @@ def potential(scene):
     return scene.potential_expression + model.added_potential.subs(number), slope
 
 
+def _line():
+    """Return the grid on which suprema are taken: 0 and both signs of ever larger values."""
+    chosen = tuning.ASSUMPTIONS
+    end, count = chosen.equidistant
+    positive = np.geomspace(chosen.nearest, chosen.farthest, chosen.logarithmic)
+    positive = np.unique(np.concatenate([positive, np.linspace(0, end, count)]))
+    return np.concatenate([-positive[::-1], [0.0], positive])
+
+
 def _supremum(function):
-    values = function(_LINE)
+    """Take the largest value on the grid and look for a larger one near it."""
+    line = _line()
+    values = function(line)
     best = int(np.argmax(values))
-    around = _LINE[max(best - 1, 0)], _LINE[min(best + 1, len(_LINE) - 1)]
+    around = line[max(best - 1, 0)], line[min(best + 1, len(line) - 1)]
     refined = minimize_scalar(lambda z: -float(function(np.array(z))), around, bounds=around)
     return max(float(values[best]), -float(refined.fun))
 
 
 @lru_cache(maxsize=256)
-def confinement(scene):
+def confinement(scene: Scene) -> Confinement:
     """Compute the constants of (HU1)-(HU5) of a scene's potential.
 
     lambda_1 and lambda_2 are half of what they could be at infinity.
@@ -133,44 +141,55 @@ def confinement(scene):
         If (HU1) or (HU2) does not hold.
     """
     U, slope = (vectorised(expression, (x,)) for expression in potential(scene))
-    with np.errstate(all="ignore"):
-        growth = np.min(U(_FAR) / _FAR**2)
-        steep = np.max(np.abs(slope(_FAR) / _FAR))
-        nearer = np.max(np.abs(slope(_FAR / 10) / (_FAR / 10)))
-    if not (np.isfinite(steep) and steep <= 2 * nearer + 1e-6):
-        raise SceneError(
-            f"U = {scene.potential!r} violates (HU1), its derivative is not Lipschitz; "
-            "use a potential of at most quadratic growth"
-        )
-    if not growth > 1e-6:
-        raise SceneError(
-            f"U = {scene.potential!r} violates (HU2), U(x) >= c x**2 - C; "
-            "add a confining term such as x**2/2"
-        )
+    curvature = _curvature_at_infinity(scene, U, slope)
+    chosen = tuning.ASSUMPTIONS
+    far = np.array([-chosen.farthest, chosen.farthest])
     shift = max(0.0, _supremum(lambda z: -U(z)))
 
     def lifted(z):
         return U(z) + shift
 
-    lambda_1 = growth / 2
-    lambda_2 = np.min(_FAR * slope(_FAR) / U(_FAR)) / 2
+    lambda_1 = curvature / 2
+    lambda_2 = np.min(far * slope(far) / U(far)) / 2
 
     def least(function):
-        return max(0.0, _supremum(function)) * (1 + _SAFETY) + _POSITIVE
+        return max(0.0, _supremum(function)) * (1 + chosen.safety) + chosen.positive
 
-    inside = np.linspace(-1, 1, 2001)
+    inside = np.linspace(-1, 1, chosen.inside)
+    steepest = float(np.max(np.abs(slope(inside)))) * (1 + chosen.inside_safety)
     return Confinement(
         lambda_1=float(lambda_1),
         beta_1=least(lambda z: lambda_1 * z**2 - lifted(z)),
         lambda_2=float(lambda_2),
         beta_2=least(lambda z: lambda_2 * lifted(z) - z * slope(z)),
-        steepest=float(np.max(np.abs(slope(inside)))) * (1 + 1e-3) + _POSITIVE,
+        steepest=steepest + chosen.positive,
         shift=shift,
     )
 
 
-def restoring_rate(noise):
-    """Return the largest r with v'(eta) eta >= r eta^2 (eq. cond-boldvprime).
+def _curvature_at_infinity(scene, U, slope):
+    """Return the limit of U / x^2, having checked (HU1) and (HU2)."""
+    chosen = tuning.ASSUMPTIONS
+    far = np.array([-chosen.farthest, chosen.farthest])
+    with np.errstate(all="ignore"):
+        curvature = np.min(U(far) / far**2)
+        steep = np.max(np.abs(slope(far) / far))
+        nearer = np.max(np.abs(slope(far / 10) / (far / 10)))
+    if not (np.isfinite(steep) and steep <= 2 * nearer + chosen.quadratic):
+        raise SceneError(
+            f"U = {scene.potential!r} violates (HU1), its derivative is not Lipschitz; "
+            "use a potential of at most quadratic growth"
+        )
+    if not curvature > chosen.quadratic:
+        raise SceneError(
+            f"U = {scene.potential!r} violates (HU2), U(x) >= c x**2 - C; "
+            "add a confining term such as x**2/2"
+        )
+    return curvature
+
+
+def restoring_rate(noise: Langevin) -> float:
+    """Return the largest r with v'(eta) eta >= r eta^2 (eq. (2) of the paper).
 
     Parameters
     ----------
@@ -182,8 +201,9 @@ def restoring_rate(noise):
         If there is none above 0.
     """
     ratio = sympy.cancel(sympy.diff(noise.potential_expression, eta) / eta)
-    at = _LINE[_LINE != 0]
-    r = float(np.min(vectorised(ratio, (eta,))(at))) * (1 - _SAFETY)
+    line = _line()
+    least = float(np.min(vectorised(ratio, (eta,))(line[line != 0])))
+    r = least * (1 - tuning.ASSUMPTIONS.safety)
     if not r > 0:
         raise SceneError(
             f"the noise potential v = {noise.potential!r} violates v'(eta) eta >= r eta**2; "
@@ -192,13 +212,13 @@ def restoring_rate(noise):
     return r
 
 
-def dissipation(noise):
+def dissipation(noise: Hamiltonian) -> Dissipation:
     """Compute the constants of (T117) and (T120).
 
     The paper takes R, M and delta~ from its reference and assumes that they exist. For
     H = k eta^2/2 + zeta^2/2 and F = gamma_0, R = c eta zeta with c = gamma_0/2 gives
-    (1/2 d_zetazeta + B_1 d_zeta + B_2 d_eta)(H + R) = 1/2 - gamma_0 (H + R) exactly; if the
-    noise is strongly damped c = k/(2 gamma_0) keeps both quadratic forms positive.
+    (1/2 d_zetazeta + B_1 d_zeta + B_2 d_eta)(H + R) = 1/2 - gamma_0 (H + R) exactly. If the
+    noise is strongly damped, c = k/(2 gamma_0) keeps both quadratic forms positive.
 
     Parameters
     ----------
@@ -223,4 +243,5 @@ def dissipation(noise):
     rate = min(
         scipy.linalg.eigvalsh(form.energy)[0], scipy.linalg.eigvalsh(form.decay, form.energy)[0]
     )
-    return Dissipation(float(rate) * (1 - _SAFETY), 0.5, k, damping, cross)
+    rate = float(rate) * (1 - tuning.ASSUMPTIONS.safety)
+    return Dissipation(rate, 0.5, k, damping, cross)

@@ -1,16 +1,22 @@
-"""The bounds that the proof of Lemma lemma1 gives for V_n and its drift, to be tested pointwise.
+"""The bounds that the proof of Lemma 2 gives for V_n and its drift, to be tested pointwise.
 
-Claims S_1 to S_4, the boxed bounds of A_n V_n + epsilon V_n, and the lower bound of V_n.
+Claims 7 to 10 bound the terms S_1 to S_4 of A_n V_n + epsilon V_n; the boxed bounds (25), (28) and
+(31) follow from them. The lower bound of V_n is the first step of (HV1).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import sympy
 
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
 from nonsmooth.theory import lyapunov
+
+Points = Mapping[sympy.Symbol, np.ndarray]
+Pair = tuple[np.ndarray, np.ndarray]  # a sum of terms, and the sum of their absolute values
 
 
 @dataclass(frozen=True)
@@ -30,22 +36,22 @@ class Bound:
     linear: dict
 
     @property
-    def supremum(self):
+    def supremum(self) -> float:
         """The constant C of (HV2) that follows from it."""
         return self.constant + sum(
             slope**2 / (4 * self.quadratic[s]) for s, slope in self.linear.items()
         )
 
-    def evaluate(self, z):
-        """Return the bound and the sum of the absolute values of its terms, as `evaluate`."""
+    def evaluate(self, z: Points) -> Pair:
+        """Return the bound and the sum of the absolute values of its terms at points."""
         terms = [self.constant]
         terms += [-coefficient * z[s] ** 2 for s, coefficient in self.quadratic.items()]
         terms += [coefficient * np.abs(z[s]) for s, coefficient in self.linear.items()]
         return lyapunov.summed(terms)
 
 
-def bound(scene):
-    """Eqs. (An2V2epsV2-bound), (An3V3epsV3-bound); (An4V4epsV4-bound) with claim S_4 mended.
+def bound(scene: Scene) -> Bound:
+    """Return the right-hand side of (25), (28), or (31) with Claim 10 mended.
 
     Parameters
     ----------
@@ -70,8 +76,8 @@ def bound(scene):
     return Bound(constant + own.constant, quadratic, linear)
 
 
-def noise_bound(scene, printed=False):
-    """Eqs. (lyapu-bound-S3), (lyapu-bound-S4); the latter mended unless `printed`.
+def noise_bound(scene: Scene, printed: bool = False) -> Bound:
+    """Return the right-hand side of (27), or of (30), which is mended unless `printed`.
 
     (T120) gives L Gamma_2 + epsilon Gamma_2 <= K M (1 + delta~) - (delta~ - epsilon) Gamma_2,
     and (T117) Gamma_2 >= K delta~ (eta^2 + zeta^2).
@@ -97,11 +103,10 @@ def noise_bound(scene, printed=False):
     return Bound(constant, {eta: slope, zeta: slope}, {})
 
 
-def mechanical_claims(scene, z):
-    """S_1(x) and S_2(y, x) at the points z, and the claims' bounds of them.
+def mechanical_claims(scene: Scene, z: Points) -> list[tuple[Pair, Pair]]:
+    """S_1(x) and S_2(y, x) at the points z, and the bounds (20) and (24) of them.
 
-    Eqs. (lyapu-bound-S1) and (lyapu-bound-S2); the latter is Gamma~ x^2/2 + ..., which grows, so
-    that its coefficients count negative here.
+    The bound (24) grows with x and y, so that its coefficients are negative here.
 
     Parameters
     ----------
@@ -133,7 +138,7 @@ def mechanical_claims(scene, z):
     ]
 
 
-def noise_drift(scene, z):
+def noise_drift(scene: Scene, z: Points) -> Pair:
     """S_3(eta) or S_4(zeta, eta) at the points z, and the sum of their terms' absolute values."""
     c = lyapunov.constants(scene)
     weight, small = c.noise_weight, c.epsilon
@@ -154,7 +159,7 @@ def noise_drift(scene, z):
     )
 
 
-def lower_bound(scene):
+def lower_bound(scene: Scene) -> Bound:
     """Return the first step of (HV1) as a bound of -V_n.
 
     V_{n,2} >= y^2/2 (delta - 1/(delta lambda_1)) + delta lambda_1 x^2/2 + 1, and (T117).

@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize
+from sympy import Symbol
 
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
-from nonsmooth.theory import drift_bounds, lyapunov
-
-_SMALLEST = 1e-6  # least non-zero value on each axis, besides the kinks
-_EVALUATIONS = 60  # of the refinement, for each variable
+from nonsmooth.theory import drift_bounds, lyapunov, tuning
 
 
 @dataclass(frozen=True)
@@ -26,8 +25,8 @@ class Margins:
         (C - supremum) / C.
     boxed, lower, mechanical, forcing, forcing_printed : float
         Smallest (bound - value) / (sum of the absolute values of all terms) over the grid: of the
-        boxed bound, of the lower bound of (HV1), of claims S_1 and S_2, of claim S_3 or S_4, and of
-        the latter as printed. 1 where there is no such claim.
+        boxed bound, of the lower bound of (HV1), of Claims 7 and 8, of Claim 9 or 10, and of the
+        latter as printed. 1 where there is no such claim.
     coefficient : float
         c > 0 in V_n >= c |z|^2 + 1.
     rounding : float
@@ -47,13 +46,15 @@ class Margins:
     rounding: float
 
 
-def variables(scene):
+def variables(scene: Scene) -> tuple[Symbol, ...]:
     """Return the variables of V_n: all of the state, without x where that is not confined."""
     confined = lyapunov.constants(scene).confinement is not None
     return tuple(s for s in scene.variables if s != x or confined)
 
 
-def grid(scene, names, points, reach):
+def grid(
+    scene: Scene, names: tuple[Symbol, ...], points: int, reach: float
+) -> dict[Symbol, np.ndarray]:
     """Return points of a product grid: 0, the kinks, and log-spaced values of both signs.
 
     Parameters
@@ -74,7 +75,7 @@ def grid(scene, names, points, reach):
     knot, _, _ = scene.mechanics.penalty.at(scene.n)
     axes = []
     for s in names:
-        positive = np.geomspace(_SMALLEST, reach, half)
+        positive = np.geomspace(tuning.DRIFT_CONDITION.smallest, reach, half)
         if s == scene.mechanics.argument:
             positive = np.append(positive, knot)
         axes.append(np.unique(np.concatenate([-positive, [0.0], positive])))
@@ -82,18 +83,8 @@ def grid(scene, names, points, reach):
     return {s: values.ravel() for s, values in zip(names, mesh, strict=True)}
 
 
-def _smallest(bound, value):
-    (upper, large), (lower, small) = bound, value
-    terms = large + small
-    room = np.divide(upper - lower, terms, out=np.ones_like(terms), where=terms > 0)
-    return float(np.min(np.where(terms > 0, room, 0.0)))
-
-
-def margins(scene, points=20_000, reach=1e6):
+def margins(scene: Scene, points: int = 20_000, reach: float = 1e6) -> Margins:
     """Search the state space for the smallest margins.
-
-    The largest value on the grid is refined by Powell's method, which needs no derivatives and so
-    does not mind the kinks.
 
     Parameters
     ----------
@@ -115,47 +106,17 @@ def margins(scene, points=20_000, reach=1e6):
     names = variables(scene)
     z = grid(scene, names, points, reach)
     value, magnitude = lyapunov.evaluate(scene, z)
-    boxed = drift_bounds.bound(scene)
-    best = int(np.argmax(value))
-    top, spread = float(value[best]), float(magnitude[best])
-    start = np.array([z[s][best] for s in names])
-    scale = np.where(start == 0, _SMALLEST, np.abs(start))
-
-    def negative(w):
-        at = {s: np.array([v]) for s, v in zip(names, w * scale, strict=True)}
-        total, terms = lyapunov.evaluate(scene, at)
-        nonlocal top, spread
-        if total[0] > top:
-            top, spread = float(total[0]), float(terms[0])
-        return -float(total[0])
-
-    limits = {"maxfev": _EVALUATIONS * len(names)}
-    minimize(negative, start / scale, method="Powell", options=limits)
-    constant = boxed.supremum
-    forcing = forcing_printed = 1.0
-    if scene.noise.kind != "white":
-        own = tuple(s for s in (zeta, eta) if s in names)
-        w = grid(scene, own, points, reach)
-        drift = drift_bounds.noise_drift(scene, w)
-        forcing = _smallest(drift_bounds.noise_bound(scene).evaluate(w), drift)
-        forcing_printed = _smallest(
-            drift_bounds.noise_bound(scene, printed=True).evaluate(w), drift
-        )
-    mechanical = 1.0
-    if x in names:
-        w = grid(scene, (y, x), points, reach)
-        mechanical = min(
-            _smallest(bound, value) for value, bound in drift_bounds.mechanical_claims(scene, w)
-        )
+    boxed, below = drift_bounds.bound(scene), drift_bounds.lower_bound(scene)
+    top, spread = _supremum(scene, names, z, value, magnitude)
+    mechanical, forcing, forcing_printed = _margins_of_claims(scene, names, points, reach)
     V, terms = lyapunov.evaluate(scene, z, "value")
-    below = drift_bounds.lower_bound(scene)
     unit = np.finfo(float).eps
     operations = 4 * len(STATE_VARIABLES) + 8  # products within and sums over the terms
     return Margins(
         supremum=top,
         supremum_error=operations * unit * spread,
-        constant=constant,
-        drift=1 - top / constant,
+        constant=boxed.supremum,
+        drift=1 - top / boxed.supremum,
         boxed=_smallest(boxed.evaluate(z), (value, magnitude)),
         lower=_smallest(below.evaluate(z), (-V, terms)),
         mechanical=mechanical,
@@ -164,3 +125,50 @@ def margins(scene, points=20_000, reach=1e6):
         coefficient=min(below.quadratic.values()),
         rounding=2 * operations * unit,
     )
+
+
+def _supremum(scene, names, z, value, magnitude):
+    """Largest A_n V_n + epsilon V_n on a grid and near its best point, and its terms' size.
+
+    Powell's method needs no derivatives, so that kinks do not matter.
+    """
+    best = int(np.argmax(value))
+    found = [(float(value[best]), float(magnitude[best]))]
+    start = np.array([z[s][best] for s in names])
+    scale = np.where(start == 0, tuning.DRIFT_CONDITION.smallest, np.abs(start))
+
+    def negative(w):
+        at = {s: np.array([v]) for s, v in zip(names, w * scale, strict=True)}
+        total, terms = lyapunov.evaluate(scene, at)
+        found.append((float(total[0]), float(terms[0])))
+        return -float(total[0])
+
+    limits = {"maxfev": tuning.DRIFT_CONDITION.evaluations * len(names)}
+    minimize(negative, start / scale, method="Powell", options=limits)
+    return max(found, key=lambda pair: pair[0])
+
+
+def _margins_of_claims(scene, names, points, reach):
+    """Margins of Claims 7 and 8, of Claim 9 or 10, and of the latter as printed; else 1."""
+    mechanical = forcing = forcing_printed = 1.0
+    if scene.noise.kind != "white":
+        w = grid(scene, tuple(s for s in (zeta, eta) if s in names), points, reach)
+        drift = drift_bounds.noise_drift(scene, w)
+        forcing, forcing_printed = (
+            _smallest(drift_bounds.noise_bound(scene, printed).evaluate(w), drift)
+            for printed in (False, True)
+        )
+    if x in names:
+        w = grid(scene, (y, x), points, reach)
+        mechanical = min(
+            _smallest(bound, value) for value, bound in drift_bounds.mechanical_claims(scene, w)
+        )
+    return mechanical, forcing, forcing_printed
+
+
+def _smallest(bound, value):
+    """Return the smallest distance of a value from its bound, relative to the size of all terms."""
+    (upper, large), (lower, small) = bound, value
+    terms = large + small
+    room = np.divide(upper - lower, terms, out=np.ones_like(terms), where=terms > 0)
+    return float(np.min(np.where(terms > 0, room, 0.0)))

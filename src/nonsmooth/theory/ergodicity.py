@@ -1,13 +1,14 @@
-"""V-uniform ergodicity (Theorem thm1) and the bound of Poisson solutions (Theorem thm2), measured.
+"""V-uniform ergodicity (Theorem 4) and the bound of Poisson solutions (Theorem 5), measured.
 
-The semigroup is stepped in time, so that the rate of decay owes nothing to eigenvalues, and norms
-are weighted with the paper's own Lyapunov function V_n. Norms on a box do not see how long a path
-from infinity takes to come back; there the drift is linear, and its eigenvalues say it.
+The semigroup is stepped in time, so that the rate of decay owes nothing to eigenvalues. Norms are
+weighted with the paper's own Lyapunov function V_n. They are taken on a box and do not see how long
+a path from infinity takes to come back; far out the drift is linear, and
+`scenes.relaxation.rate_at_infinity` has the rate there.
 """
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,20 +17,9 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.theory import lyapunov
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.theory import lyapunov, tuning
 
-_DEPTH = 20.0  # the density at the edge of the box is exp(-_DEPTH) of its maximum
-_COARSE, _FINE = 1, 2  # levels
-_SETTLED, _FLOOR = 1e-3, 1e-10  # of the norm at the start, between which the rate is taken
-# eigenvalues that coincide, or nearly, make the norm t^k exp(-rate t), of which the slope in the
-# middle of an interval is k/t too small: in its second half, 3.7 times what it has changed since
-# all of it, and half as much again for complex pairs
-_UNSETTLED = 5.6
-_LONGEST = 20_000  # steps
-_TRUSTED = 0.75  # of a box, in whose corners the solution sees where it ends
-_POINTS, _NEAREST = 60, 1e-4  # points on each side of 0, and the first of them
-_ROUNDS, _NEAR = 6, 13  # closer looks at the largest value, and points of each variable in them
-_ROUNDING = 1e-11  # relative; against linear scenes it comes to 2e-12
 _GAMMA = 1 - math.sqrt(0.5)  # of the L-stable, singly diagonal Runge-Kutta scheme of order two
 
 
@@ -50,7 +40,7 @@ class Bound:
     edge: float
 
 
-def decay_rate(scene, step=0.1):
+def decay_rate(scene: Scene, step: float = 0.1) -> Estimate:
     """Rate at which sup |P_t f - m(f)| / (V_n + 1) decays on a box, the slower of f = g and V_n.
 
     Parameters
@@ -74,10 +64,11 @@ def decay_rate(scene, step=0.1):
     """
     _require_grid(scene)
     began = time.perf_counter()
-    slow, _ = _rate(scene, _COARSE, 2 * step)
-    coarse, _ = _rate(scene, _COARSE, step)
-    value, earlier = _rate(scene, _FINE, step)
-    error = abs(slow - coarse) + abs(value - coarse) + _UNSETTLED * abs(value - earlier)
+    chosen = tuning.ERGODICITY
+    slow, _ = _rate(scene, chosen.coarse, 2 * step)
+    coarse, _ = _rate(scene, chosen.coarse, step)
+    value, earlier = _rate(scene, chosen.fine, step)
+    error = abs(slow - coarse) + abs(value - coarse) + chosen.unsettled * abs(value - earlier)
     if not error < value / 2:
         raise ToleranceError(
             f"P_t f decays at the rate {value:.3g} with an error of {error:.1g}: the step is too "
@@ -86,7 +77,7 @@ def decay_rate(scene, step=0.1):
     return Estimate(value, error, "time stepping", time.perf_counter() - began)
 
 
-def poisson_bound(scene, enlargement=2.0):
+def poisson_bound(scene: Scene, enlargement: float = 2.0) -> Bound:
     """Find the constant C of |u| <= C (V_n + 1), u the Poisson solution of g - E g.
 
     Parameters
@@ -108,10 +99,11 @@ def poisson_bound(scene, enlargement=2.0):
         If the grid does not resolve where |u| / (V_n + 1) is large.
     """
     _require_grid(scene)
-    narrow, _ = _largest(scene, _FINE, (enlargement - 1) / 2)
-    coarse, _ = _largest(scene, _COARSE, enlargement - 1)
-    constant, edge = _largest(scene, _FINE, enlargement - 1)
-    error = abs(constant - coarse) + abs(constant - narrow) + _ROUNDING * constant
+    chosen = tuning.ERGODICITY
+    narrow, _ = largest_ratio(scene, chosen.fine, (enlargement - 1) / 2)
+    coarse, _ = largest_ratio(scene, chosen.coarse, enlargement - 1)
+    constant, edge = largest_ratio(scene, chosen.fine, enlargement - 1)
+    error = abs(constant - coarse) + abs(constant - narrow) + chosen.rounding * constant
     if not error < constant / 2:
         raise ToleranceError(
             f"|u| / (V + 1) = {constant:.3g} has an error of {error:.1g}: the grid does not "
@@ -129,9 +121,9 @@ def _require_grid(scene):
 
 
 def _discretised(scene, level, margin=0.0):
-    grid = tensor_grid.fitted(scene, _DEPTH, _COARSE)
-    grid = replace(grid, levels=dict.fromkeys(grid.levels, level), margin=margin)
-    axes, solver = tensor_grid.solver(scene, grid)
+    chosen = tuning.ERGODICITY
+    grid = tensor_grid.fitted(scene, chosen.depth, chosen.coarse)
+    axes, solver = tensor_grid.solver(scene, grid.at_level(level, margin))
     return axes, solver, evaluate(scene.numerical_observable(), axes)
 
 
@@ -140,8 +132,24 @@ def _lyapunov(scene, axes, points=None):
     return lyapunov.evaluate(scene, values, "value")[0]
 
 
-def _largest(scene, level, margin=0.0):
-    """Find the largest |u| / (V_n + 1) in the trusted part of a box, and on its surface."""
+def largest_ratio(scene: Scene, level: int, margin: float = 0.0) -> tuple[float, float]:
+    """Find the largest |u| / (V_n + 1) on one grid, u the Poisson solution of g - E g.
+
+    Parameters
+    ----------
+    scene : Scene
+        As for `decay_rate`.
+    level : int
+        Of the grid.
+    margin : float
+        Width that is added to the box, relative to its half width.
+
+    Returns
+    -------
+    largest, edge : float
+        In the part of the box that is far from its corners, and on the surface of that part.
+    """
+    chosen = tuning.ERGODICITY
     axes, solver, g = _discretised(scene, level, margin)
     u = solver.unfold(solver.solve(solver.fold(g), ODD)[0], ODD)
     u -= solver.stationary() @ u
@@ -156,25 +164,29 @@ def _largest(scene, level, margin=0.0):
 
     points = {}
     for symbol, axis in axes.items():  # V_n has a narrow valley at 0
-        positive = np.geomspace(_NEAREST, _TRUSTED * axis.edges[-1], _POINTS)
+        positive = np.geomspace(
+            chosen.nearest,
+            chosen.trusted * axis.edges[-1],
+            chosen.points,
+        )
         points[symbol] = np.concatenate([-positive[::-1], [0.0], positive])
     found = ratio(points)
     inner = np.pad(np.ones([k - 2 for k in found.shape]), 1)
     largest, edge = np.max(found), np.max(found[inner == 0])
-    for _ in range(_ROUNDS):
+    for _ in range(chosen.rounds):
         best = np.unravel_index(np.argmax(found), found.shape)
         for (symbol, values), place in zip(points.items(), best, strict=True):
             ends = values[max(place - 1, 0)], values[min(place + 1, len(values) - 1)]
-            points[symbol] = np.linspace(*ends, _NEAR)
+            points[symbol] = np.linspace(*ends, chosen.near)
         found = ratio(points)
         largest = max(largest, np.max(found))
     return float(largest), float(edge)
 
 
 def _rate(scene, level, step):
-    """Rate of decay in the second half of the time from _SETTLED to _FLOOR, and in all of it."""
+    """Rate of decay in the second half of the window in which it is taken, and in all of it."""
     norm = np.max([part / part[0] for part in _norms(scene, level, step)], axis=0)
-    window = np.log(norm[np.argmax(norm < _SETTLED) :])
+    window = np.log(norm[np.argmax(norm < tuning.ERGODICITY.settled) :])
 
     def slope(values):
         # a complex pair of eigenvalues makes the norm oscillate, which the weights suppress
@@ -186,7 +198,8 @@ def _rate(scene, level, step):
 
 
 def _norms(scene, level, step):
-    """Norms of P_t f - m(f) at multiples of the step until all are below _FLOOR; f = g and V."""
+    """Norms of P_t f - m(f) for f = g and V_n, at multiples of the step until both are small."""
+    chosen = tuning.ERGODICITY
     axes, solver, g = _discretised(scene, level)
     V = _lyapunov(scene, axes)
     masses, shift = solver.stationary(), 1 / (_GAMMA * step)
@@ -194,10 +207,10 @@ def _norms(scene, level, step):
     parts = [(solver.fold(f - masses @ f), parity) for f, parity in ((g, ODD), (V, EVEN))]
     masses = solver.fold(masses) / np.sum(solver.fold(masses))
     norms = [[np.max(np.abs(f) / weight)] for f, _ in parts]
-    while any(norm[-1] > _FLOOR * norm[0] for norm in norms):
-        if len(norms[0]) > _LONGEST:
+    while any(norm[-1] > chosen.floor * norm[0] for norm in norms):
+        if len(norms[0]) > chosen.longest:
             raise ToleranceError(
-                f"P_t f has not decayed in {_LONGEST} steps of {step:g}; take a longer step"
+                f"P_t f has not decayed in {chosen.longest} steps of {step:g}; take a longer step"
             )
         for k, (f, parity) in enumerate(parts):
             stage = shift * solver.resolvent(f, parity, shift)

@@ -1,13 +1,14 @@
-"""The paper's Lyapunov functions V_n and their drift A_n V_n + epsilon V_n (Lemma lemma1).
+"""The paper's Lyapunov functions V_n and their drift A_n V_n + epsilon V_n (Lemma 2).
 
-Everything is an expression in the undefined functions of `nonsmooth.generic`, so that the terms
-delta y U'(x) of opposite sign cancel in algebra and not in floating point; a scene's own
-functions enter as numbers. Where the displacement is not confined, U = 0, (HU2) does not hold and
-the paper's V_n is no Lyapunov function; the velocity alone has delta y^2/2 + C_V, for which all
-formulas hold with 1/lambda_3 = Gamma = 0.
+Everything is derived for the undefined functions of `scenes.equations`, so that the terms
+delta y U'(x) of opposite sign cancel in algebra and not in floating point. Then the values of a
+scene's own functions are put in. Where the displacement is not confined, as for U = 0, (HU2) does
+not hold and the paper's V_n is no Lyapunov function. The velocity alone has delta y^2/2 + C_V, for
+which all formulas hold with 1/lambda_3 = Gamma = 0.
 """
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -19,19 +20,18 @@ from nonsmooth.scenes import equations
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
 from nonsmooth.scenes.symbols import damping as C_b
-from nonsmooth.theory import assumptions
+from nonsmooth.theory import assumptions, tuning
 
 delta, epsilon, C_V, xi, K, M = sympy.symbols("delta epsilon C_V xi K M", positive=True)
 R = sympy.Function("R")
 
-_SLACK = 1.01  # the inequalities (LB-delta) are strict
-
 
 @dataclass(frozen=True)
 class Constants:
-    """Constants that satisfy (LB-delta) and (def-epsilon-CV), claim S_4 mended.
+    """Constants that satisfy (14) and (18) of the paper, with Claim 10 mended.
 
     Attributes
     ----------
@@ -54,8 +54,8 @@ class Constants:
     dissipation: assumptions.Dissipation | None
 
 
-def function(kind, confined=True):
-    """Return V_{n,d} of eq. (Lyapunov-functions), an expression.
+def function(kind: str, confined: bool = True) -> sympy.Expr:
+    """Return V_{n,d} of eq. (13) of the paper, an expression.
 
     Parameters
     ----------
@@ -74,14 +74,14 @@ def function(kind, confined=True):
     return own[kind] + mechanical
 
 
-def generator(psi, kind):
-    """Return A_n psi of eq. (inf-gen), with the drift of Table 2."""
+def generator(psi: sympy.Expr, kind: str) -> sympy.Expr:
+    """Return A_n psi of eq. (9) of the paper, with the drift of Table 2."""
     noise = NOISES[kind]
     transport = sum(f * sympy.diff(psi, s) for s, f in equations.drift(noise).items())
     return sympy.diff(psi, noise.driven, 2) / 2 + transport
 
 
-def drift(kind, confined=True):
+def drift(kind: str, confined: bool = True) -> sympy.Expr:
     """Return A_n V_n + epsilon V_n, expanded; the left-hand side of (HV2)."""
     V = function(kind, confined)
     total = generator(V, kind) + epsilon * V
@@ -91,11 +91,11 @@ def drift(kind, confined=True):
 
 
 @lru_cache(maxsize=256)
-def constants(scene):
+def constants(scene: Scene) -> Constants:
     """Choose the constants as the paper's proof does, within one per cent of their bounds.
 
     epsilon is half of its bound. For the Hamiltonian noise it must be below delta~ too, and the
-    bound of K has delta~ (delta~ - epsilon) in the place of delta~^2, as claim S_4 asks for.
+    bound of K has delta~ (delta~ - epsilon) in the place of delta~^2, as Claim 10 asks for.
 
     Parameters
     ----------
@@ -122,8 +122,8 @@ def constants(scene):
     bounds = [2 / b * (2 + 4 * (b + scene.n) ** 2 * inverse / 3)]
     if trap:
         bounds.append(1 / math.sqrt(trap.lambda_1))
-    big = _SLACK * max(bounds)
-    # K_2 of (An2V2epsV2-bound) has C_V for epsilon C_V, which needs epsilon <= 1
+    big = tuning.LYAPUNOV.slack * max(bounds)
+    # the constant of (25) has C_V in the place of epsilon C_V, which needs epsilon <= 1
     limits = [b, 1.0] + ([trap.lambda_3 / big] if trap else [])
     restoring, form = math.inf, None
     if scene.noise.kind == "langevin":
@@ -142,14 +142,14 @@ def constants(scene):
         delta=big,
         epsilon=small,
         C_V=1 + big * trap.beta_1 if trap else 1.0,
-        noise_weight=_SLACK * weight[scene.noise.kind],
+        noise_weight=tuning.LYAPUNOV.slack * weight[scene.noise.kind],
         restoring=restoring,
         confinement=trap,
         dissipation=form,
     )
 
 
-def drift_expression(scene):
+def drift_expression(scene: Scene) -> sympy.Expr:
     """Return A_n V_n + epsilon V_n of a scene, an expression in its state."""
     c = constants(scene)
     U, _ = assumptions.potential(scene)
@@ -174,7 +174,7 @@ def _numbers(scene):
     }
 
 
-# what stands for the undefined functions when the drift is evaluated
+# symbols that stand for the undefined functions when the drift is evaluated
 _U, _slope, _fx, _fy, _slope_v = sympy.symbols("U Uprime f_x f_y vprime", real=True)
 _k, _gamma, _cross = sympy.symbols("k gamma_0 cross", real=True)
 _PLACES = (_U, _slope, _fx, _fy, _slope_v, _k, _gamma, _cross)
@@ -204,7 +204,9 @@ def _compiled(kind, confined, what):
     return sympy.lambdify((*STATE_VARIABLES, *_PLACES, *_PARAMETERS), terms, modules="numpy")
 
 
-def evaluate(scene, z, what="drift"):
+def evaluate(
+    scene: Scene, z: Mapping[sympy.Symbol, np.ndarray], what: str = "drift"
+) -> tuple[np.ndarray, np.ndarray]:
     """Evaluate V_n or A_n V_n + epsilon V_n term by term.
 
     Parameters
@@ -227,7 +229,7 @@ def evaluate(scene, z, what="drift"):
 
 
 @lru_cache(maxsize=64)
-def functions(scene):
+def functions(scene: Scene) -> tuple[list, tuple[float, ...], bool]:
     """Return what the drift is evaluated with.
 
     Parameters
@@ -262,7 +264,7 @@ def functions(scene):
     return compiled, (*quadratic, *(numbers[s] for s in _PARAMETERS)), c.confinement is not None
 
 
-def summed(terms):
+def summed(terms: Iterable[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Return the sum of terms and the sum of their absolute values."""
     total = magnitude = 0.0
     for term in terms:

@@ -18,7 +18,7 @@ WELLS = "x**2/2 + 4*exp(-x**2)"
 @pytest.mark.parametrize("noise", ["white", "langevin", QUARTIC, "hamiltonian"])
 @pytest.mark.parametrize(("damping", "n"), [(0.1, 2), (1.0, 100), (10.0, 1e4)])
 def test_every_scene_has_room(model, noise, damping, n):
-    """(HV2), the boxed bound, the claims and the lower bound; S_4 only as mended."""
+    """(HV2), the boxed bound, the claims and the lower bound; Claim 10 only as mended."""
     m = margins(ns.Scene(model, noise, n=n, damping=damping, potential=WELLS), points=3000)
     for name in ("drift", "boxed", "lower", "mechanical", "forcing"):
         assert getattr(m, name) >= -m.rounding, name

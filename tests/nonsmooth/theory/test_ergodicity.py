@@ -139,5 +139,5 @@ def test_the_narrow_valley_of_stiff_walls():
     """V is large but for |z| < 1e-4: as on a grid of two levels more."""
     scene = ns.Scene("obstacle", n=1000, potential="x**2/2", observable="x")
     found = poisson_bound(scene)
-    finer, _ = ergodicity._largest(scene, 4, 1.0)
+    finer, _ = ergodicity.largest_ratio(scene, 4, 1.0)
     assert abs(found.constant - finer) <= found.error < 1e-3 * finer

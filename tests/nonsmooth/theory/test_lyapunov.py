@@ -81,7 +81,7 @@ def test_drift_is_the_generator_of_the_scene(noise):
 @pytest.mark.parametrize("noise", ["white", "langevin", "hamiltonian"])
 @pytest.mark.parametrize("potential", ["0", "x**2/2"])
 def test_constants_satisfy_the_boxed_inequalities(noise, potential):
-    """(LB-delta), (def-epsilon-CV), and epsilon < delta~."""
+    """The inequalities (14) and (18) of the paper, and epsilon < delta~."""
     n = 5
     scene = ns.Scene("friction", noise, n=n, potential=potential, damping=0.5)
     c, b = lyapunov.constants(scene), scene.damping
