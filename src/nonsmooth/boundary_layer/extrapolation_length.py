@@ -3,7 +3,7 @@
 import time
 
 from nonsmooth.boundary_layer.milne import solved_constants
-from nonsmooth.boundary_layer.sampled import sampled_length
+from nonsmooth.boundary_layer.sampled import sampled_kappa
 from nonsmooth.errors import SceneError
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene
@@ -51,7 +51,7 @@ def extrapolation_length(
     began = time.perf_counter()
     solved = solved_constants(scene, tol)
     if solved is None:
-        return sampled_length(scene, tol, seed, threads)
+        return sampled_kappa(scene, tol, seed, threads)
     kappa, error = (numbers.kappa[SIDES.index(side)] for numbers in solved)
     method = "discrete ordinates" if scene.is_line else "tensor grids"
     return Estimate(kappa, error, method, time.perf_counter() - began)

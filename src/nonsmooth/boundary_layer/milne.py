@@ -4,7 +4,7 @@ from functools import lru_cache
 
 from nonsmooth.boundary_layer import asymmetric_line, symmetric_line, two_variables
 from nonsmooth.boundary_layer.constants import LayerConstants
-from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
+from nonsmooth.boundary_layer.sampled import sampled_kappa, sampled_poisson
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.asymptotic_variance import limit_variance
@@ -71,7 +71,7 @@ def layer_constants(
     solved = solved_constants(scene)
     if solved is not None:
         return solved
-    kappa = sampled_length(scene, seed=labelled(seed, "length"), threads=threads)
+    kappa = sampled_kappa(scene, seed=labelled(seed, "length"), threads=threads)
     gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
     u = sampled_poisson(scene, labelled(seed, "start"), threads)
     return (

@@ -47,7 +47,7 @@ class _Cycle:
     stride: int = 1
 
 
-def sampled_length(
+def sampled_kappa(
     scene: Scene, tol: float | None = None, seed: int | tuple = 0, threads: int | None = None
 ) -> Estimate:
     """Estimate kappa from what int g gains after a passage.

@@ -45,8 +45,8 @@ class Sampled:
     far: float = 2.0
     attempts: int = 3  # each with more paths and time; chosen: a minute
     start: float = 0.05  # relative error of the variance for the mean from the start; chosen
-    # paths that measure the bias of the step: at least, and one in so many of all; chosen: their
-    # steps and half steps cost as much as the others
+    # paths that measure the bias of the step: at least, and one in so many of all; chosen: with
+    # steps and half steps they cost three quarters of the others
     pilot_paths: int = 1000
     halved: int = 4
 

@@ -12,6 +12,6 @@ or by counting paths. The manual has the derivations and the choice of the metho
 - `corrected_formula.corrected_crossing`: corrected formulas with their errors, from the
   distribution functions of `expansion` and the mean over the clock of `random_clock`.
 - `first_passage`: the deterministic method.
-- `counting`: Monte Carlo.
+- `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting`.
 - `tuning`: resolutions and switching points.
 """

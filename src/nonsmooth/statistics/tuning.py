@@ -85,8 +85,8 @@ class SampledGamma2:
 
     # chosen: the least relative tolerance that is tried; work grows as its inverse square or faster
     least_tolerance: float = 1e-3
-    # chosen: between which the slope is taken, unless it still changes; five correlation times or
-    # more pass before the first in scenes whose time scale is 1
+    # chosen: between which the slope is taken, unless it still changes; where the time scale of the
+    # scene is 1, its start is long forgotten at the first
     times: tuple[float, ...] = (10.0, 60.0, 110.0)
     # chosen: relaxation times of the drift far out that pass before the first of them at least
     relaxed: float = 2.0
@@ -94,7 +94,7 @@ class SampledGamma2:
     soft: float = 1e3
     # chosen: how often the times are doubled, up to 64 times those above
     doublings: int = 7
-    # chosen: paths from each well; a slope of theirs that is off by a tenth is seen
+    # chosen: paths from each well; slopes of theirs that differ by a fifth are told apart
     scouts: int = 1024
     # chosen: slopes agree within so many standard errors, or to this relative difference
     agreement_errors: float = 4.0

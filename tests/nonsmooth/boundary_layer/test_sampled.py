@@ -1,13 +1,13 @@
 """kappa and the Poisson solution by Monte Carlo."""
 
 import nonsmooth as ns
-from nonsmooth.boundary_layer.sampled import sampled_length, sampled_poisson
+from nonsmooth.boundary_layer.sampled import sampled_kappa, sampled_poisson
 from nonsmooth.boundary_layer.symmetric_line import layer_constants
 
 
 def test_kappa_of_dry_friction():
     """Within the stated error, two standard errors and more; the seed is fixed."""
-    found = sampled_length(ns.Scene("friction"), seed=1)
+    found = sampled_kappa(ns.Scene("friction"), seed=1)
     assert abs(found.value - 0.2911259630) < found.error
     assert found.error < 0.2 * found.value
 
