@@ -8,10 +8,9 @@ from nonsmooth.scenes.symbols import eta
 from reproduction.printed import numbered
 from reproduction.tables import scientific, typeset
 
-BOUNDS = r"\ref{An2V2epsV2-bound}, \ref{An3V3epsV3-bound}, \ref{An4V4epsV4-bound}"
 COLUMNS = {
     "drift": r"$1 - \sup / C$",
-    "boxed": rf"bound {BOUNDS}",
+    "boxed": r"\ref{An2V2epsV2-bound}, \ref{An3V3epsV3-bound}, \ref{An4V4epsV4-bound}",
     "mechanical": "$S_1$, $S_2$",
     "forcing": "$S_3$, $S_4$",
     "forcing_printed": "$S_4$ printed",
