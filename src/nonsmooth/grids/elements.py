@@ -1,16 +1,18 @@
 """Spectral elements in one variable: nodal polynomials between edges, with their derivatives.
 
 A variable that noise drives gets continuous elements, on which the second derivative is the weak
-one. A variable that is only transported gets discontinuous elements; what happens on a face is
-decided by the sign of the drift there (upwinding), so their jumps are kept apart.
+one. A variable that is only transported gets discontinuous elements. There the sign of the drift on
+a face decides from which side a value is taken (upwinding), so that jumps are kept apart.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.polynomial import legendre
+from numpy.typing import ArrayLike
 from scipy.special import roots_jacobi
 
 
@@ -53,7 +55,7 @@ class Axis:
     lift_left: sp.csr_array
     lift_right: sp.csr_array
 
-    def interpolation(self, points):
+    def interpolation(self, points: ArrayLike) -> sp.csr_array:
         """Matrix that takes nodal values to values at points, 0 outside.
 
         Parameters
@@ -82,7 +84,7 @@ class Axis:
 
 
 @lru_cache(maxsize=64)
-def lobatto(degree):
+def lobatto(degree: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Gauss-Lobatto nodes, weights and the derivative matrix on [-1, 1]."""
     inner, _ = roots_jacobi(degree - 1, 1, 1)  # the zeros of the Legendre polynomial's slope
     nodes = np.concatenate([[-1.0], inner, [1.0]])
@@ -90,7 +92,7 @@ def lobatto(degree):
     return nodes, 2 / (degree * (degree + 1) * last**2), lagrange(nodes, nodes)[1]
 
 
-def lagrange(nodes, points):
+def lagrange(nodes: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values and slopes at `points` of the polynomials that are 1 at one node, 0 at the others.
 
     Parameters
@@ -109,7 +111,48 @@ def lagrange(nodes, points):
     return values, legendre.legval(points, legendre.legder(modes)).T
 
 
-def continuous(edges, degree):
+def summed(blocks: Iterable[np.ndarray]) -> np.ndarray:
+    """Assemble the matrix of continuous elements from the matrices of the single elements.
+
+    Parameters
+    ----------
+    blocks : iterable of numpy.ndarray, shape (d + 1, d + 1)
+        From left to right; the last node of each element is the first of the next.
+
+    Returns
+    -------
+    numpy.ndarray, shape (e d + 1, e d + 1)
+    """
+    blocks = list(blocks)
+    degree = len(blocks[0]) - 1
+    matrix = np.zeros((len(blocks) * degree + 1,) * 2)
+    for e, block in enumerate(blocks):
+        here = slice(e * degree, (e + 1) * degree + 1)
+        matrix[here, here] += block
+    return matrix
+
+
+def energy(slopes: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Integrate products of slopes over one element, sum_q w_q phi_i'(q) phi_j'(q).
+
+    Constants have no energy, so that the rows sum to zero. This is enforced, because rounding in
+    the narrowest elements costs digits.
+
+    Parameters
+    ----------
+    slopes : numpy.ndarray, shape (q, d + 1)
+        At the points of quadrature.
+    weights : numpy.ndarray, shape (q,)
+
+    Returns
+    -------
+    numpy.ndarray, shape (d + 1, d + 1)
+    """
+    block = slopes.T @ (weights[:, None] * slopes)
+    return block - np.diag(block.sum(axis=1))
+
+
+def continuous(edges: np.ndarray, degree: int) -> Axis:
     """Make continuous elements with Gauss-Lobatto nodes (lumped mass matrix).
 
     Parameters
@@ -127,13 +170,13 @@ def continuous(edges, degree):
     half, middle = np.diff(edges) / 2, (edges[1:] + edges[:-1]) / 2
     size = len(half) * degree + 1
     nodes, weights = np.empty(size), np.zeros(size)
-    first, second = np.zeros((2, size, size))
     for e in range(len(half)):
         here = slice(e * degree, (e + 1) * degree + 1)
         nodes[here] = middle[e] + half[e] * points
         weights[here] += half[e] * quadrature
-        first[here, here] += quadrature[:, None] * derivative
-        second[here, here] -= derivative.T @ (quadrature[:, None] * derivative) / half[e]
+    first = summed([quadrature[:, None] * derivative] * len(half))
+    square = derivative.T @ (quadrature[:, None] * derivative)
+    second = summed([-square / h for h in half])
     release = np.zeros((size, size))
     release[0, : degree + 1] -= derivative[0] / half[0]
     release[-1, -degree - 1 :] += derivative[-1] / half[-1]
@@ -153,7 +196,7 @@ def continuous(edges, degree):
     )
 
 
-def discontinuous(edges, degree):
+def discontinuous(edges: np.ndarray, degree: int) -> Axis:
     """Make discontinuous elements with Gauss nodes, exact for drifts linear in each element.
 
     Parameters

@@ -4,16 +4,23 @@ Everything is read from the scene's own drift: coefficients are evaluated at the
 faces of discontinuous elements, where their sign decides from which side a value is taken.
 """
 
+from collections.abc import Container, Mapping
 from functools import reduce
 
 import numpy as np
 import scipy.sparse as sp
 import sympy
 
+from nonsmooth.grids.elements import Axis
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.scene import Scene
 
 
-def evaluate(expression, axes, points=None):
+def evaluate(
+    expression: sympy.Expr,
+    axes: Mapping[sympy.Symbol, Axis],
+    points: Mapping[sympy.Symbol, np.ndarray] | None = None,
+) -> np.ndarray:
     """Evaluate a formula on a tensor grid.
 
     Parameters
@@ -33,7 +40,7 @@ def evaluate(expression, axes, points=None):
     return vectorised(expression, tuple(axes))(*grid).ravel()
 
 
-def start_row(scene, axes, side=1):
+def start_row(scene: Scene, axes: Mapping[sympy.Symbol, Axis], side: int = 1) -> np.ndarray:
     """Row vector that interpolates functions on a tensor grid at the start, or at its mirror image.
 
     Parameters
@@ -52,7 +59,11 @@ def start_row(scene, axes, side=1):
     return reduce(np.kron, [part.toarray()[0] for part in parts])
 
 
-def assemble(scene, axes, equations=None):
+def assemble(
+    scene: Scene,
+    axes: Mapping[sympy.Symbol, Axis],
+    equations: Container[sympy.Symbol] | None = None,
+) -> sp.csr_array:
     """Assemble the generator, or the part of it that belongs to some of the equations.
 
     Parameters
@@ -61,7 +72,7 @@ def assemble(scene, axes, equations=None):
         With a finite n.
     axes : dict
         Maps symbols to `Axis`; the first varies slowest.
-    equations : iterable of sympy.Symbol, optional
+    equations : container of sympy.Symbol, optional
         The variables whose drift and diffusion are included; all unless given.
 
     Returns

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nonsmooth.grids.elements import Axis, continuous, lobatto
+from nonsmooth.grids.elements import Axis, continuous, energy, lobatto, summed
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.mesh_line import element_edges
@@ -175,10 +175,7 @@ def _halved(y, g, masses, stiffness, row):
 def _stiffness(axis: Axis, degree, density):
     """<phi_i', phi_j'> by the elements' own quadrature."""
     _, weights, slope = lobatto(degree)
-    matrix = np.zeros((len(axis.nodes), len(axis.nodes)))
-    for k, width in enumerate(np.diff(axis.edges)):
-        here = slice(k * degree, (k + 1) * degree + 1)
-        local = slope.T @ ((weights * density[here] * 2 / width)[:, None] * slope)
-        # A maps constants to 0: enforced, or rounding in the narrowest elements costs digits
-        matrix[here, here] += local - np.diag(local.sum(axis=1))
-    return matrix
+    return summed(
+        energy(slope, weights * density[k * degree : (k + 1) * degree + 1] * 2 / width)
+        for k, width in enumerate(np.diff(axis.edges))
+    )

@@ -8,10 +8,10 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-import scipy
 from numpy.polynomial import legendre
 
 from nonsmooth.errors import SceneError
+from nonsmooth.grids.elements import energy, lagrange, lobatto, summed
 from nonsmooth.grids.grading import growing, mirrored
 from nonsmooth.line import tuning
 from nonsmooth.line.potential import depth, potential
@@ -52,14 +52,9 @@ def mesh(scene: Scene) -> np.ndarray:
 @lru_cache(maxsize=8)
 def _reference_element(degree):
     """Lagrange basis on the Gauss-Lobatto nodes at over-integrating Gauss points."""
-    # the zeros of the Legendre polynomial's slope
-    inner, _ = scipy.special.roots_jacobi(degree - 1, 1, 1)
-    nodes = np.concatenate([[-1.0], inner, [1.0]])
+    nodes, _, _ = lobatto(degree)
     points, weights = legendre.leggauss(degree + tuning.SPECTRAL_ELEMENTS.extra_points)
-    to_modes = np.linalg.inv(legendre.legvander(nodes, degree))
-    values = legendre.legvander(points, degree) @ to_modes
-    slopes = legendre.legval(points, legendre.legder(to_modes)).T
-    return nodes, points, weights, values, slopes
+    return nodes, points, weights, *lagrange(nodes, points)
 
 
 def assemble(scene: Scene, degree: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -85,25 +80,21 @@ def assemble(scene: Scene, degree: int) -> tuple[np.ndarray, np.ndarray, np.ndar
     edges, phi = mesh(scene), depth(scene)
     g = vectorised(scene.numerical_observable(), (symbols.y,))
     nodes, points, weights, values, slopes = _reference_element(degree)
-    size = (len(edges) - 1) * degree + 1
-    mass, stiffness, observable = np.zeros((3, size, size))
-    where = np.empty(size)
+    mass, stiffness, observable = [], [], []
+    where = np.empty((len(edges) - 1) * degree + 1)
     for k, (left, right) in enumerate(pairwise(edges)):
         half = (right - left) / 2
-        here = slice(k * degree, (k + 1) * degree + 1)
-        where[here] = left + half * (nodes + 1)
+        where[k * degree : (k + 1) * degree + 1] = left + half * (nodes + 1)
         at = left + half * (points + 1)
         weight = weights * half * np.exp(-phi(at))
         values_of_g = _finite(g, at, scene)
-        mass[here, here] += values.T @ (weight[:, None] * values)
-        observable[here, here] += values.T @ ((weight * values_of_g)[:, None] * values)
-        local = slopes.T @ ((weight / half**2)[:, None] * slopes)
-        # A maps constants to 0: this is enforced, or rounding in the narrowest elements costs
-        # digits
-        stiffness[here, here] += local - np.diag(local.sum(axis=1))
-    total = mass.sum()
+        mass.append(values.T @ (weight[:, None] * values))
+        observable.append(values.T @ ((weight * values_of_g)[:, None] * values))
+        stiffness.append(energy(slopes, weight / half**2))
+    masses = summed(mass)
+    total = masses.sum()
     factor = scene.noise.sigma**2 / 2
-    return where, mass / total, factor * stiffness / total, observable / total
+    return where, masses / total, factor * summed(stiffness) / total, summed(observable) / total
 
 
 def _finite(g, at, scene):
