@@ -38,13 +38,13 @@ def rate_at_infinity(scene: Scene) -> Estimate:
     far_out, mismatch = tuning.LINEAR_DRIFT.distances, tuning.LINEAR_DRIFT.mismatch
     symbols = tuple(symbol for symbol in scene.variables if symbol.name in scene.state)
     drift = scene.numerical_drift()
-    drift = [vectorised(drift[symbol], symbols) for symbol in symbols]
+    rates = [vectorised(drift[symbol], symbols) for symbol in symbols]
 
     def slopes(direction):
-        values = np.array([rate(*np.outer(direction, far_out)) for rate in drift])
+        values = np.array([rate(*np.outer(direction, far_out)) for rate in rates])
         return np.diff(values) / np.diff(far_out)
 
-    near, far = np.moveaxis([slopes(unit) for unit in np.eye(len(symbols))], 2, 0)
+    near, far = np.moveaxis(np.array([slopes(unit) for unit in np.eye(len(symbols))]), 2, 0)
     for corner in itertools.product([-1.0, 1.0], repeat=len(symbols)):
         linear = (corner @ near)[:, None]
         if not np.allclose(slopes(corner), linear, rtol=mismatch, atol=mismatch):

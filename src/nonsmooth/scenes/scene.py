@@ -65,26 +65,47 @@ class Scene:
         self._warn_if_g_grows()
 
     def _check(self):
+        """Put names and numbers into their usual form; refuse what is not a scene."""
+        self._check_model_and_noise()
+        self._check_numbers()
+        self._check_start()
+        unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
+        if unknown:
+            raise SceneError(
+                f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
+                f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
+            )
+
+    def _check_model_and_noise(self):
         if isinstance(self.model, Model):  # one that has a known name goes by it
             if MODELS.get(self.model.name) == self.model:
-                object.__setattr__(self, "model", self.model.name)
+                self._set("model", self.model.name)
         else:
             _require_known("model", self.model, MODELS)
         if isinstance(self.noise, str):
             _require_known("noise", self.noise, noises.NOISES)
-            object.__setattr__(self, "noise", noises.NOISES[self.noise])
+            self._set("noise", noises.NOISES[self.noise])
         if not isinstance(self.noise, noises.Noise) or isinstance(self.noise, type):
             raise SceneError(
                 f"a scene needs noise, got {self.noise!r}; choose from {', '.join(noises.NOISES)} "
                 "or a noise object"
             )
+
+    def _check_numbers(self):
         for name in ("n", "damping"):
             try:
-                object.__setattr__(self, name, float(getattr(self, name)))
+                value = float(getattr(self, name))
             except (TypeError, ValueError):
                 raise SceneError(
                     f"a scene needs a number for {name}, got {getattr(self, name)!r}; choose one"
                 ) from None
+            if not value > 0:
+                raise SceneError(f"a scene needs {name} > 0, got {value}; choose a positive number")
+            self._set(name, value)
+        if math.isinf(self.damping):
+            raise SceneError("a scene needs a finite damping; choose a positive number")
+
+    def _check_start(self):
         try:
             start = {name: float(value) for name, value in sorted(self.start.items())}
         except (AttributeError, TypeError, ValueError):
@@ -93,26 +114,18 @@ class Scene:
             ) from None
         if not all(map(math.isfinite, start.values())):
             raise SceneError(f"start = {start} is not finite; choose finite numbers")
-        object.__setattr__(self, "start", start)
-        for name, value in (("n", self.n), ("damping", self.damping)):
-            if not value > 0:
-                raise SceneError(f"a scene needs {name} > 0, got {value}; choose a positive number")
-        if not self.damping < float("inf"):
-            raise SceneError("a scene needs a finite damping; choose a positive number")
-        for name in self.start:
+        for name in start:
             _require_known("start variable", name, [s.name for s in self.variables])
         wall = self.mechanics.wall
-        if math.isinf(self.n) and abs(self.start.get("x", 0.0)) > wall:
+        if math.isinf(self.n) and abs(start.get("x", 0.0)) > wall:
             raise SceneError(
                 f"at n = inf the displacement is confined to [{-wall:g}, {wall:g}], but it starts "
-                f"at {self.start['x']}; start inside or choose a finite n"
+                f"at {start['x']}; start inside or choose a finite n"
             )
-        unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
-        if unknown:
-            raise SceneError(
-                f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
-                f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
-            )
+        self._set("start", start)
+
+    def _set(self, name, value):
+        object.__setattr__(self, name, value)
 
     def _warn_if_not_confined(self):
         """Warn if U_n grows less than quadratically (hyp:HU2b); reads the formula of U.
