@@ -26,7 +26,6 @@ try:
 except NonsmoothError as error:
     sys.exit(f"error: {error}")
 
-RESULTS = config["outputs"]["results"]
 PAPER = config["outputs"]["paper"]
 
 

@@ -181,12 +181,12 @@ def label(number):
 
 
 def swept(config):
-    """Parameters of the scenes that the sweep simulates: a dict from names."""
+    """Return the scenes that the sweep simulates, by their names."""
     return {name: config["sweep"]["scenes"][name] for name in config["sweep"]["simulated"]}
 
 
 def ergodic_scenes(config):
-    """Parameters of the scenes of table 7b: a dict from names, in the order of the table."""
+    """Return the parameters of the scenes of table 7b by their names, in the table's order."""
     scenes = config["sweep"]["scenes"]
     return {name: scenes[name]["scene"] for name in config["theorems"]["ergodicity"]["scenes"]}
 
@@ -197,21 +197,21 @@ def shards(topic):
 
 
 def part(topic, shard):
-    """First path of a shard and number of its paths; the other shards do not enter."""
+    """First path of a shard and number of its paths; they do not depend on the other shards."""
     first = int(shard) * topic["shard"]
     return first, min(topic["shard"], topic["paths"] - first)
 
 
 def halving_paths(topic, p):
-    """Spend on every p what the largest costs, as far as the samples themselves go."""
+    """Choose so many paths that halving costs the same at every p, but no more than are sampled."""
     return min(topic["paths"], round(topic["halving"]["paths"] * max(topic["p"]) / float(p)))
 
 
 def sweep_halving(topic, p):
-    """Fewer paths for the halving of longer runs, by which the standard error shrinks too."""
+    """Choose fewer paths for longer runs, in which halving the step changes less at random."""
     return max(1_000, round(topic["halving_paths"] / max(1.0, float(p) / 100)))
 
 
 def finite(numbers):
-    """Those of the numbers that are finite: the paper's scheme needs a finite n."""
+    """Leave out infinity: the paper's scheme needs a finite n."""
     return [number for number in numbers if isfinite(number)]

@@ -1,4 +1,4 @@
-# What all rules share, written once.
+# What all rules share, written once: paths, parameters by look-up, and what `complete` adds.
 from functools import partial
 
 

@@ -1,4 +1,4 @@
-# Table 4: v(0, T)/T for increasing n, the paper's values beside ours.
+# Table 4: v(0, T)/T for increasing n, the printed values beside ours.
 
 
 rule convergence_spectral:

@@ -1,4 +1,4 @@
-# Invariant densities of scenes of the sweep: by the solvers and as histograms.
+# Figure 7: invariant densities of scenes of the sweep, solved for and as histograms.
 
 
 rule density:

@@ -1,4 +1,4 @@
-# What is wrong in the paper, with evidence.
+# What is wrong in the printed paper, with evidence.
 
 
 rule errata:

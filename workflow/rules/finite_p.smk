@@ -1,4 +1,4 @@
-# Crossing probabilities at finite p without Monte Carlo, and the corrected formulas.
+# Figure 10, table 9: crossing probabilities at finite p without Monte Carlo, and the corrected formulas.
 
 
 rule finite_p_exact:

@@ -1,4 +1,4 @@
-# gamma^2 of the scenes of the sweep without Monte Carlo, and beside it.
+# Tables 5, 5b: gamma^2 by the Poisson equation beside gamma^2 by Monte Carlo.
 
 
 rule gamma2:

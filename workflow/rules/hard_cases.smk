@@ -1,4 +1,5 @@
-# Nasty cases: an error that holds, or a message. Not part of the paper; a target of its own.
+# Nasty cases, in which every method must return an error that holds, or a message. Not part of the
+# paper; a target of its own.
 
 
 rule examine_hard_cases:

@@ -1,4 +1,5 @@
-# The functional central limit theorem for scenes of the sweep: Xi_p against gamma W.
+# Figure 8: the functional central limit theorem, by which Xi_p tends to gamma W, for scenes of the
+# sweep.
 
 
 rule limit_theorem_samples:

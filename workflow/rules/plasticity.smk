@@ -1,4 +1,4 @@
-# An example: the permanent deformation of a yielding structure in an earthquake.
+# Figure 9, an example: the permanent deformation of a yielding structure in an earthquake.
 
 
 rule plasticity_variance:

@@ -1,4 +1,4 @@
-# The limit n -> infinity: distances of penalized scenes to their non-smooth limits.
+# Figure 12, table 10: distances of penalized scenes to their limits n -> infinity.
 
 
 rule measure_rates:

@@ -1,4 +1,4 @@
-# The sweep: gamma^2 and crossing probabilities of every scene by Monte Carlo.
+# Figure 6, table 6: gamma^2 and crossing probabilities of every scene by Monte Carlo.
 
 
 rule sweep_variance:

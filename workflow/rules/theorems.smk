@@ -1,4 +1,5 @@
-# The paper's Lemma 1 and Theorems 1 and 2, tested: drift condition of every scene, rates, bounds.
+# The paper's Lemma 2 and Theorems 4 and 5, tested: the drift condition of every scene, rates of
+# decay and bounds of the Poisson solution.
 
 
 rule drift_condition:

@@ -10,8 +10,8 @@ from reproduction.tables import sorted_by
 def crossing(monte_carlo, exact, asymptotic, check, contained):
     """Draw W(sqrt(p) b, p T) and W_star(b / gamma, T), their differences, and the 95 % bands.
 
-    Lines are exact, the bands those of Monte Carlo; below, the bands less the exact curves. The
-    artifacts of the checks are not drawn: without them there is no figure.
+    Lines are exact and bands are by Monte Carlo. The lowest panel has the bands less the exact
+    curves. The artifacts of the checks are not drawn, but there is no figure unless they exist.
 
     Returns
     -------

@@ -15,8 +15,9 @@ from reproduction.jobs import produce
 def bias_of_gamma2(scene, time, step, paths, seed, threads):
     """Estimate the bias of v(0, time) from steps h and h/2, relative to v.
 
-    For p large it is the bias of gamma^2, and less that of the mean logarithm of the first-passage
-    time, which is measured far less precisely. The paths are independent of those of the shards.
+    For large `time` this is the relative bias of gamma^2. For large p the first-passage times have
+    the same relative bias with the opposite sign, but there it cannot be measured so precisely. The
+    paths are independent of those of the shards.
 
     Returns
     -------

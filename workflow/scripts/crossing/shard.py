@@ -12,7 +12,7 @@ from reproduction.jobs import produce
 
 
 def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):
-    """Simulate a part of the ensemble: (number of its first path, number of paths).
+    """Simulate a part of the ensemble, given by the number of its first path and of its paths.
 
     Returns
     -------

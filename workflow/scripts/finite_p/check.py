@@ -15,13 +15,16 @@ REPLICATES = 10_000  # ensembles that the second is taken from
 
 
 def containment(monte_carlo, exact, seed):
-    """Compare the bands with exact probabilities, twice.
+    """Compare the bands with exact probabilities in two ways.
 
-    Simultaneous bands must contain the curves at every p and T. Pointwise 95 % bands contain an
-    exact probability in 95 % of all ensembles, but all T share their paths, so that the share of
-    p and T at which they contain the curves fluctuates widely from ensemble to ensemble: what it
-    may be follows from ensembles of the same size, drawn from the exact curves. In both, the bias
-    of the time step, as measured by halving it, is allowed for.
+    Simultaneous bands must contain the curves at every p and T.
+
+    Pointwise 95 % bands contain an exact probability in 95 % of all ensembles. But all T share
+    their paths, so that the share of p and T at which such bands contain the curves varies widely
+    from ensemble to ensemble. How small it may be by chance is found from many ensembles of the
+    same size, drawn from the exact curves.
+
+    Both allow for the bias of the time step, which was measured by halving the step.
 
     Parameters
     ----------
@@ -43,7 +46,6 @@ def containment(monte_carlo, exact, seed):
     points = sum(curve.sizes["horizon"] for curve in exact)
     z = -ndtri(OUTSIDE / 2 / points)
     paths = int(monte_carlo[0]["paths"])
-    _, lowest, highest = proportion(np.arange(paths + 1), paths)
     contained, distance, standard_errors, replicates = [], [], [], []
     for run, curve in zip(monte_carlo, exact, strict=True):
         run = run.sel(horizon=curve["horizon"], method="nearest", tolerance=1e-9)
@@ -66,12 +68,7 @@ def containment(monte_carlo, exact, seed):
         )
         distance.append(np.abs(probability - truth).max())
         standard_errors.append(np.max(np.abs(probability - truth) / run["probability_error"]))
-        sampled = np.maximum.accumulate(np.clip(truth + bias, 0.0, 1.0))
-        random = np.random.default_rng([seed, len(replicates)])
-        cells = np.diff(sampled, prepend=0.0, append=1.0)
-        counts = random.multinomial(paths, cells, size=REPLICATES)[:, :-1].cumsum(axis=1)
-        inside = (lowest[counts] <= truth) & (truth <= highest[counts])
-        replicates.append(inside.mean(axis=1))
+        replicates.append(_shares(truth, bias, paths, [seed, len(replicates)]))
     share, shares = np.mean(contained), np.mean(replicates, axis=0)
     least = np.quantile(shares, RARELY)
     if share < least:
@@ -95,6 +92,17 @@ def containment(monte_carlo, exact, seed):
             "outside": ((), OUTSIDE, "probability that a simultaneous band misses by chance"),
         },
     )
+
+
+def _shares(truth, bias, paths, seed):
+    """Draw ensembles from a curve with a bias; find the share of T at which bands contain it."""
+    _, lowest, highest = proportion(np.arange(paths + 1), paths)
+    sampled = np.maximum.accumulate(np.clip(truth + bias, 0.0, 1.0))
+    cells = np.diff(sampled, prepend=0.0, append=1.0)
+    random = np.random.default_rng(seed)
+    counts = random.multinomial(paths, cells, size=REPLICATES)[:, :-1].cumsum(axis=1)
+    inside = (lowest[counts] <= truth) & (truth <= highest[counts])
+    return inside.mean(axis=1)
 
 
 if __name__ == "__main__":

@@ -25,9 +25,9 @@ LAWS = {
 def distances(samples, limit, scenes, level):
     """Compare the samples with the laws of W(1) and of the maximum of |W|.
 
-    At the largest p no distance may be above what the smaller ones and the errors allow if it is
-    of order p^(-1/2) (`allowed_distance`); by Bonferroni over all scenes, laws and p. The bias
-    of the time step is part of the error of gamma^2.
+    A distance should fall like p^(-1/2). At the largest p it must not be above what the smaller p
+    then allow, with their errors (`allowed_distance`). The errors hold for all scenes, laws and p
+    at once, by Bonferroni's inequality. That of gamma^2 includes the bias of the time step.
 
     Parameters
     ----------

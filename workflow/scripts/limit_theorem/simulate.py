@@ -12,7 +12,7 @@ from reproduction.limit_theorem import scaled_integrals
 
 
 def simulate(scene, p, step, paths, seed, threads):
-    """Simulate every p on the same paths: to start a process takes longer than a small p.
+    """Simulate every p in one job, because to start a job takes longer than to simulate a small p.
 
     Returns
     -------

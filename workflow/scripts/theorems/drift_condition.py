@@ -82,7 +82,7 @@ def search(potentials, langevin, damping, n, points, reach):
     ratios = MARGINS | {"forcing_printed": "the same as forcing, claim S_4 as printed"}
     return artifact.dataset(
         "Drift condition of every scene",
-        "room of the inequalities of the paper's Lemma 1; negative where they fail",
+        "room of the inequalities of the paper's Lemma 2; negative where they fail",
         {
             label: ("case", list(column), names[label])
             for label, column in zip(labels, columns, strict=True)

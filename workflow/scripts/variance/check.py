@@ -11,13 +11,13 @@ FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although noth
 
 
 def deviations(spectral, finite_difference, monte_carlo):
-    """Compare at every plotted tau; deviations are in units of what is allowed.
+    """Compare the methods at every plotted tau, in units of what is allowed.
 
-    Nor may the time step's bias be significantly above the standard error.
-
-    Allowed is, for the finite differences, the sum of both error bounds; for Monte Carlo, z
-    standard errors (of the sample and of the bias estimate together) after removal of the
-    estimated bias, z from the false-alarm rate by Bonferroni over the tau.
+    The finite differences may deviate by the sum of both error bounds. Monte Carlo may, once its
+    estimated bias is subtracted, deviate by z standard errors, which are those of the sample and of
+    the bias together. By Bonferroni's inequality over all tau, z follows from the probability of a
+    false alarm. Besides, the bias of the time step must not be significantly above the standard
+    error.
 
     Returns
     -------
