@@ -22,7 +22,7 @@ def evidence():
 
 @pytest.mark.parametrize("label", LABELS)
 def test_printed_is_wrong_and_mended_is_right(evidence, label):
-    """By the relation and the error that the entry states."""
+    """The printed value violates the stated relation to the reference, the mended one keeps it."""
     e = evidence[label]
     assert not e.holds(e.printed)
     assert e.holds(e.mended)
@@ -33,7 +33,7 @@ def test_printed_is_wrong_and_mended_is_right(evidence, label):
 
 
 def test_every_entry_is_there():
-    """Fourteen, in order, none twice."""
+    """There are fourteen, in order, and no label occurs twice."""
     numbers = [int(re.match(r"\d+", label)[0]) for label in LABELS]
     assert numbers == sorted(numbers)
     assert set(numbers) == set(range(1, 15))
@@ -41,7 +41,7 @@ def test_every_entry_is_there():
 
 
 def test_texts_are_balanced(evidence):
-    """Mathematics between dollar signs, braces closed."""
+    """Dollar signs and braces are paired, and every label of the paper has its number."""
     for erratum in ERRATA:
         quantity = evidence[erratum.label].quantity
         for text in (erratum.place, erratum.wrong, erratum.right, quantity):
@@ -59,14 +59,14 @@ def test_texts_are_balanced(evidence):
     ],
 )
 def test_relations(relation, right, wrong):
-    """Equal, an upper bound, a lower bound, each within the error."""
+    """A value is equal, at least or at most the reference, each within the error."""
     e = Evidence("", 0, 0, reference=1.0, error=0.11, relation=relation)
     assert all(map(e.holds, right))
     assert not any(map(e.holds, wrong))
 
 
 def test_known_values(evidence):
-    """Against numbers derived by hand."""
+    """The references agree with formulas derived by hand."""
     assert evidence["1"].reference == pytest.approx(1 / 1.4, rel=1e-15)  # 1/(2 C_b)
     assert evidence["2"].reference == pytest.approx(0.25, rel=1e-13)  # sigma^2/(2 theta)
     # sigma^2/(2 k gamma_0), k = 2, gamma_0 = 0.6, sigma = 2
@@ -77,7 +77,7 @@ def test_known_values(evidence):
 
 
 def test_printed_numbers_are_the_papers(evidence):
-    """Those that paper/printed.yaml has too."""
+    """They agree with those of paper/printed.yaml."""
     printed = yaml.safe_load((ROOT / "paper" / "printed.yaml").read_text(encoding="utf-8"))
     table = printed["tab:convergence-vng-n"]
     assert evidence["4"].printed == printed["fig:fpn-cmp-PDE-MC"]["asymptotic_value"]
@@ -87,7 +87,7 @@ def test_printed_numbers_are_the_papers(evidence):
 
 
 def test_only_one_entry_of_table_4_is_truncated(evidence):
-    """The one of n = 2; n = 50 is neither rounded nor truncated."""
+    """That of n = 2 is truncated; that of n = 50 is neither rounded nor truncated."""
     truncated = {k: int(evidence[k].reference * 1e6) / 1e6 for k in ("5b", "5c")}
     assert evidence["5b"].printed == truncated["5b"]
     assert evidence["5c"].printed < truncated["5c"]

@@ -1,4 +1,4 @@
-"""Nasty cases, reduced: an error that holds, or a message."""
+"""Hard cases with fewer paths: a stated error that holds, or a message."""
 
 import math
 import warnings
@@ -13,7 +13,7 @@ from reproduction.hard_cases.cases import CASES
 from reproduction.hard_cases.record import MET, REFUSED, WARNED, WRONG, Case, Result, examine
 
 PATHS = 1_000
-# solvers that take seconds; the target hard_cases has them
+# their solvers take long; the target hard_cases has them
 SLOW = ("$b$ of probability", "double well, barrier $8 kT$")
 FAST = [
     case
@@ -24,7 +24,7 @@ FAST = [
 
 @pytest.mark.parametrize("case", FAST, ids=lambda case: f"{case.title}, {case.method}")
 def test_right_or_refused(case):
-    """False alarms: 6e-7 for each sampled case."""
+    """The stated error holds, or a message says what is wrong; false alarms: 6e-7 each."""
     outcome = examine(case, PATHS)
     assert outcome.verdict in (MET, WARNED, REFUSED), outcome
     if case.reference is not None:
@@ -44,13 +44,13 @@ def test_right_or_refused(case):
     ],
 )
 def test_verdicts(value, error, reference, verdict):
-    """Off by more than stated, not a number, or returned where only a refusal is right."""
+    """Wrong is what is off by more than stated, is no number, or should have been refused."""
     case = Case("", "", lambda paths: Result(value, error), reference and (lambda: reference))
     assert examine(case, 1).verdict == verdict
 
 
 def test_bias_of_a_variance_beside_a_large_mean():
-    """A shift of the mean by the step is none of the variance: D_h = D_h/2 + 10."""
+    """A step that shifts the mean, here by 10, has no bias in the variance."""
     half = 1000 + np.random.default_rng(1).standard_normal(500)
     vector = np.stack([np.ones(500), np.full(500, 10.0), (half + 10) ** 2 - half**2, half])
     bias, error = step_bias((vector @ vector.T)[None], 1.0)
@@ -59,7 +59,7 @@ def test_bias_of_a_variance_beside_a_large_mean():
 
 
 def test_bias_of_the_mean_covers_the_true_one():
-    """E int y^2 of dry friction at a step of 0.2; false alarm 6e-7."""
+    """E int y^2 of dry friction at a step of 0.2 is right after its bias; false alarm 6e-7."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AssumptionWarning)
         scene = ns.Scene("friction", observable="y**2")
@@ -74,7 +74,7 @@ def test_bias_of_the_mean_covers_the_true_one():
 
 
 def test_a_step_above_all_time_scales_is_refused():
-    """With the cure."""
+    """The message says to choose a smaller step."""
     scene = ns.Scene("friction")
     with pytest.raises(ToleranceError, match="choose a smaller step"):
         ns.simulate(scene, horizon=500, step=50.0, paths=1000)
@@ -87,7 +87,7 @@ def test_a_step_above_all_time_scales_is_refused():
     [("y", False), ("sign(y)", False), ("y**4", True), ("exp(y)", True), ("1/y", True)],
 )
 def test_warns_where_g_is_above_the_lyapunov_function(observable, warned):
-    """Also with the displacement: x^2 above a parabola, below a quartic."""
+    """The theorems ask for g^2 <= V: x^2 exceeds this for a quadratic U, not for a quartic one."""
     for g, U, expected in (
         (observable, "x**2/2", warned),
         ("x**2", "x**2/2", True),
@@ -100,6 +100,6 @@ def test_warns_where_g_is_above_the_lyapunov_function(observable, warned):
 
 
 def test_what_is_not_a_number_stays_that():
-    """Also as the horizon."""
+    """A threshold or a horizon that is not a number gives none."""
     assert math.isnan(ns.brownian_crossing(1.0, math.nan))
     assert math.isnan(ns.brownian_crossing(math.nan, 1.0))

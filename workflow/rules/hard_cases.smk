@@ -3,7 +3,7 @@
 
 
 rule examine_hard_cases:
-    """Try the nasty cases"""
+    """Try the hard cases"""
     output:
         "<results>/hard_cases/outcomes.nc",
     params:

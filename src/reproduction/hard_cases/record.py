@@ -88,8 +88,8 @@ def examine(case: Case, paths: int) -> Outcome:
         warnings.simplefilter("always", AssumptionWarning)
         try:
             found = case.evaluate(paths)
-        except NonsmoothError as error:
-            return Outcome(REFUSED, message=str(error))
+        except NonsmoothError as refusal:
+            return Outcome(REFUSED, message=str(refusal))
         said = " ".join(dict.fromkeys(str(warning.message) for warning in caught))
         reference = case.reference() if case.reference else None
     value, error = float(found.value), float(found.error)

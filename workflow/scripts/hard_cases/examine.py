@@ -25,7 +25,7 @@ def judge(paths):
     Raises
     ------
     CheckError
-        If a result is off by more than it says, or is not a number and nothing says so.
+        If a result is off by more than its stated error, or is not a number without a message.
     """
     outcomes = [examine(case, paths) for case in CASES]
     for case, outcome in zip(CASES, outcomes, strict=True):
@@ -45,7 +45,7 @@ def judge(paths):
 
     return artifact.dataset(
         "Hard cases",
-        f"public functions in nasty cases, {paths} paths, against independent references",
+        f"public functions in hard cases, {paths} paths, against independent references",
         {
             "title": (*texts("title", CASES), "the case, LaTeX"),
             "method": (*texts("method", CASES), "what is called"),

@@ -1,4 +1,4 @@
-"""Table of the hard cases: the true error and the stated one, or what the method says."""
+"""Table of the hard cases: the true error beside the stated one, or the message."""
 
 import math
 
