@@ -45,4 +45,7 @@ def test_damaged_artifact(finished, damage):
     run = finished.snakemake("--cores", "1", "--force", "--", "figure_5")
     assert run.returncode != 0
     assert len(lines_with(run, f"error: {RESULTS}/trajectories/{message}")) == 1
+    log = (finished.folder / RESULTS / "logs" / "figures" / "figure_5.log").read_text()
+    assert log.startswith("Traceback")
+    assert message in log
     assert not list((finished.folder / RESULTS).rglob(".*partial*"))

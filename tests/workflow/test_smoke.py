@@ -50,6 +50,15 @@ def test_every_artifact_is_described(smoke_run):
             assert {"units", "long_name"} <= variable.attrs.keys(), (path, name)
 
 
+def test_every_artifact_has_a_log_and_a_benchmark(smoke_run):
+    """Under its own name."""
+    results = smoke_run.folder / RESULTS
+    for path in results.rglob("*.nc"):
+        name = path.relative_to(results)
+        assert (results / "logs" / name).with_suffix(".log").read_text() == "done\n"
+        assert (results / "benchmarks" / name).with_suffix(".tsv").exists()
+
+
 def test_no_number_of_the_paper_is_typed():
     """The template holds no decimal number outside of lengths, sizes and section markup."""
     template = (pytest.importorskip("conftest").ROOT / "paper" / "paper.typ").read_text()
