@@ -1,7 +1,5 @@
 """What every function asks of its arguments."""
 
-from numbers import Integral
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -19,7 +17,7 @@ def require_increasing(name: str, values: ArrayLike) -> None:
 
 def require_count(name: str, value: object) -> None:
     """Refuse what is not a whole positive number."""
-    if not (isinstance(value, Integral) and value > 0):
+    if not (isinstance(value, int | np.integer) and value > 0):
         raise SceneError(
             f"the simulation needs {name} > 0, a whole number, got {value!r}; choose one"
         )

@@ -75,9 +75,9 @@ class Expansion:
     @cached_property
     def second_order_scale(self) -> float:
         """Displacement s whose square is the size of all terms of order 2; m if not known."""
-        if self.constants.order == 1:
-            return self.layer_thickness
         c = self.constants
+        if c.order == 1 or c.dipole is None or c.h is None:
+            return self.layer_thickness
         dipole = max(abs(c.dipole[0]), abs(c.dipole[1]))
         dispersion, skewness = self._memory()
         return np.sqrt(dipole + abs(c.h - c.u**2 / 2) + dispersion + skewness)

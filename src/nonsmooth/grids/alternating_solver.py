@@ -192,7 +192,9 @@ class AlternatingSolver:
             "in scenes that mix slowly; loosen tol or use Monte Carlo"
         )
 
-    def solve(self, values: np.ndarray, parity: int, accuracy: float) -> tuple[np.ndarray, float]:
+    def solve(
+        self, values: np.ndarray, parity: int, accuracy: float | None = None
+    ) -> tuple[np.ndarray, float]:
         """Solve -A u = f - E f.
 
         Parameters
@@ -212,13 +214,15 @@ class AlternatingSolver:
         ToleranceError
             If the iteration does not converge.
         """
+        assert accuracy is not None  # an iteration needs one
         solution = self._gmres(values, parity, accuracy)
         if self.mirrored and parity == ODD:
             return solution, 0.0
         return solution, float(self.measure @ solution)
 
-    def stationary(self, accuracy: float) -> np.ndarray:
+    def stationary(self, accuracy: float | None = None) -> np.ndarray:
         """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
+        assert accuracy is not None  # an iteration needs one
         masses = self.unfold(self._gmres(self.measure, EVEN, accuracy, adjoint=True), EVEN)
         return masses / masses.sum()
 

@@ -46,8 +46,10 @@ class Combination:
         cost: Callable[[Index], float],
     ):
         self._lowest, self._evaluate, self._cost = lowest, evaluate, cost
-        self._values, self._surplus = {}, {}
-        self.value, self._missing = 0.0, {}
+        self._values: dict[Index, float] = {}
+        self._surplus: dict[Index, float] = {}
+        self._missing: dict[Index, float] = {}
+        self.value = 0.0
         self._add(lowest, coarsest)
 
     def _add(self, index, functional):

@@ -55,7 +55,7 @@ class DirectSolver:
         self.generator = assemble(scene, axes)
         self.size = self.generator.shape[0]
         self.mirrored = mirrored
-        self._factors = {}
+        self._factors: dict[int | tuple[float, int], _Factors] = {}
 
     def fold(self, whole: np.ndarray) -> np.ndarray:
         """Restrict a function to the first half of the grid."""

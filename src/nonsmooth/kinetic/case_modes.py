@@ -204,7 +204,7 @@ def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Wave
     far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
     if grid.mirrored:  # both walls see the same
         strength = np.linalg.solve(above.own + above.other * far_above, weights)
-        strengths = strength, strength
+        strengths = [strength, strength]
     else:
         strengths = np.split(
             np.linalg.solve(

@@ -108,7 +108,7 @@ class Tail:
         -------
         NormalLaw
         """
-        if time == 0:
+        if time == 0 or self.lines is None:
             return NormalLaw(np.array([self.start, 0.0]), np.zeros((2, 2)))
         (push, rate), (offset, gain) = self.lines
         k = rate * time

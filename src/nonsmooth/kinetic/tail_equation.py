@@ -84,7 +84,8 @@ class TailEquation:
         grid = self._grids[octave]
         own, opposite = (above, below) if tail.towards > 0 else (below, above)
         ends, later = grid.step * np.arange(grid.count + 1), grid.stages * grid.step
-        first, boundary = 0.0, np.zeros((grid.count, len(grid.stages)), complex)
+        first: complex = 0.0
+        boundary = np.zeros((grid.count, len(grid.stages)), complex)
         if np.isfinite(self._gap):
             first += own.at(self._gap)
             boundary += own.grid(self._gap + ends[:-1], later)
@@ -200,6 +201,7 @@ def _axis(tail, top, degree, size=0.0):
 
 def _generator(tail, axis: Axis):
     """Matrix of A at the nodes."""
+    assert axis.curvature is not None  # the elements are continuous
     generator = tail.sigma**2 / 2 * axis.curvature.toarray()
     return generator - tail.drift(axis.nodes)[:, None] * axis.slope.toarray()
 

@@ -56,7 +56,11 @@ def friction_variance(n: float, damping: float = 1.0) -> tuple[float, float]:
             (0.0, min(knot, settings.reach / math.sqrt(damping + n)), slope_inside, density_inside)
         )
     for left, right, slope, density in pieces:
-        for row, integrand in enumerate((lambda y, s=slope, d=density: s(y) ** 2 * d(y), density)):
+
+        def spread(y, slope=slope, density=density):
+            return slope(y) ** 2 * density(y)
+
+        for row, integrand in enumerate((spread, density)):
             moments[row] += scipy.integrate.quad(
                 integrand, left, right, epsabs=0, epsrel=settings.tolerance, limit=200
             )

@@ -87,21 +87,20 @@ def simulate(
         raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
     if precision not in ("float32", "float64"):
         raise SceneError(f"unknown precision {precision!r}; choose 'float32' or 'float64'")
-    times = _output_times(horizon, times)
+    at = _output_times(horizon, times)
     require_positive("tol", tol)
     registry.scheme(scene, scheme)  # refuses what it cannot simulate
-    chosen = paths is None
-    paths = paths_of_variance(tol) if chosen else paths
-    require_count("paths", paths)
+    count = paths_of_variance(tol) if paths is None else paths
+    require_count("paths", count)
     if step is None:
         share = (1 - tuning.MONTE_CARLO.spread_share) * tol
-        step = choose_step(scene, times[-1:], share, seed, threads, scheme)
+        step = choose_step(scene, at[-1:], share, seed, threads, scheme)
     require_positive("step", step)
-    if chosen:
-        require_possible(paths, times[-1] / step, "the variance of int g is sampled", tol)
-    sampling = Sampling(step, paths, seed, threads=threads, scheme=scheme, precision=precision)
-    data = (_paths if keep == "paths" else _statistics)(scene, times, sampling)
-    return data.assign_attrs(step=step, paths=paths)
+    if paths is None:
+        require_possible(count, at[-1] / step, "the variance of int g is sampled", tol)
+    sampling = Sampling(step, count, seed, threads=threads, scheme=scheme, precision=precision)
+    data = (_paths if keep == "paths" else _statistics)(scene, at, sampling)
+    return data.assign_attrs(step=step, paths=count)
 
 
 def _paths(scene, times, sampling):

@@ -64,7 +64,8 @@ def invariant_density(
     if closed := closed_form(scene):
         if points is None:
             points = _equidistant(half_widths(scene, tensor_grid.depth_for(tol)))
-        return _dataset(*_of_closed_form(closed, points), points)
+        found, error = _of_closed_form(closed, points)
+        return _dataset(found, error, points)
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     if points is None:
         points = _equidistant(grid.ends)

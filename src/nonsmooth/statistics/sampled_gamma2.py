@@ -87,7 +87,10 @@ def slopes(sample: np.ndarray, times: Sequence[float]) -> Slopes:
         _slopes_between(sample[[i, k]], times[k] - times[i]) for i, k in ((0, 1), (1, 2), (0, 2))
     )
     settling = second[0] - first[0]
-    return Slopes(*whole, settling, float(np.hypot(first[1], second[1])))
+    gamma2, gamma2_error, mean, mean_error = whole
+    return Slopes(
+        gamma2, gamma2_error, mean, mean_error, settling, float(np.hypot(first[1], second[1]))
+    )
 
 
 def _slopes_between(sample, span):

@@ -98,7 +98,7 @@ def sampled_moments(
     w_error = np.abs(run["mean_bias"]) + np.hypot(run["mean_error"], run["mean_bias_error"])
     v, v_error = run["variance"].values, times * (bias + np.hypot(own, spread))
     require_accuracy(times, v, times * (bias + MONTE_CARLO.sigmas * np.hypot(own, spread)), tol)
-    return np.array([w, v]), np.array([w_error.values + uncertain * times, v_error])
+    return np.array([w, v]), np.array([np.asarray(w_error) + uncertain * times, v_error])
 
 
 def require_accuracy(times: np.ndarray, v: np.ndarray, error: np.ndarray, tol: float) -> None:

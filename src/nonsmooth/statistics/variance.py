@@ -71,8 +71,8 @@ def variance(
             f"({', '.join(scene.state)}) with {scene.noise.title} at n = {scene.n:g}; use "
             "method='monte_carlo', which takes every scene"
         )
-    either = method is None and solve is moments_on_grids.moments and tol is not None
-    if either and times[0] > 0 and np.all(np.diff(times) > 0):
+    either = method is None and solve is moments_on_grids.moments
+    if either and tol is not None and times[0] > 0 and np.all(np.diff(times) > 0):
         try:  # A few paths are faster than any grid, if a few are enough.
             found = sampled_moments(scene, times, tol, seed, threads, tuning.VARIANCE.few_steps)
             return _dataset(times, *found, "monte_carlo")

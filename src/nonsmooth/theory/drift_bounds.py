@@ -44,7 +44,7 @@ class Bound:
 
     def evaluate(self, z: Points) -> Pair:
         """Return the bound and the sum of the absolute values of its terms at points."""
-        terms = [self.constant]
+        terms: list = [self.constant]
         terms += [-coefficient * z[s] ** 2 for s, coefficient in self.quadratic.items()]
         terms += [coefficient * np.abs(z[s]) for s, coefficient in self.linear.items()]
         return lyapunov.summed(terms)
@@ -96,6 +96,7 @@ def noise_bound(scene: Scene, printed: bool = False) -> Bound:
     weight, rate = c.noise_weight, c.restoring
     if scene.noise.kind == "langevin":
         return Bound(weight / 2, {eta: weight * rate / 2}, {})
+    assert c.dissipation is not None  # the noise is of type 2
     M = c.dissipation.M
     constant, slope = weight * M * (1 + rate), weight * rate * (rate - c.epsilon)
     if printed:
@@ -122,6 +123,7 @@ def mechanical_claims(scene: Scene, z: Points) -> list[tuple[Pair, Pair]]:
     """
     c, b = lyapunov.constants(scene), scene.damping
     trap, own = c.confinement, lyapunov.functions(scene)[0]
+    assert trap is not None  # the displacement is confined
     U, slope, f_x, f_y, _ = (of(z[s]) if s in z else 0.0 for of, s in own)
     flat = 3 * trap.lambda_3 / 4
     first = lyapunov.summed([c.delta * c.epsilon * U, -slope * z[x], -c.delta * slope * f_x])
@@ -148,6 +150,7 @@ def noise_drift(scene: Scene, z: Points) -> Pair:
             [weight / 2, -weight * slope * z[eta], small * weight * z[eta] ** 2 / 2]
         )
     form = c.dissipation
+    assert form is not None  # the noise is of type 2
     energy = small * form.energy - form.decay
     return lyapunov.summed(
         [

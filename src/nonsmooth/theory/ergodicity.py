@@ -175,7 +175,7 @@ def largest_ratio(scene: Scene, level: int, margin: float = 0.0) -> tuple[float,
     largest, edge = np.max(found), np.max(found[inner == 0])
     for _ in range(chosen.rounds):
         best = np.unravel_index(np.argmax(found), found.shape)
-        for (symbol, values), place in zip(points.items(), best, strict=True):
+        for (symbol, values), place in zip(points.items(), map(int, best), strict=True):
             ends = values[max(place - 1, 0)], values[min(place + 1, len(values) - 1)]
             points[symbol] = np.linspace(*ends, chosen.near)
         found = ratio(points)

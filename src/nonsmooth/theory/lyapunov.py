@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import sympy
@@ -117,7 +118,7 @@ def constants(scene: Scene) -> Constants:
         raise SceneError("the paper's Lyapunov functions are for sigma = 1; choose it")
     free = scene.mechanics.added_potential == 0 and scene.potential_expression.is_number
     trap = None if free else assumptions.confinement(scene)
-    inverse = 0.0 if free else 1 / trap.lambda_3
+    inverse = 1 / trap.lambda_3 if trap else 0.0
     b = scene.damping
     bounds = [2 / b * (2 + 4 * (b + scene.n) ** 2 * inverse / 3)]
     if trap:
@@ -264,9 +265,10 @@ def functions(scene: Scene) -> tuple[list, tuple[float, ...], bool]:
     return compiled, (*quadratic, *(numbers[s] for s in _PARAMETERS)), c.confinement is not None
 
 
-def summed(terms: Iterable[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def summed(terms: Iterable[np.ndarray | float]) -> tuple[np.ndarray, np.ndarray]:
     """Return the sum of terms and the sum of their absolute values."""
-    total = magnitude = 0.0
+    total: Any = 0.0
+    magnitude: Any = 0.0
     for term in terms:
         total, magnitude = total + term, magnitude + np.abs(term)
     return total, magnitude

@@ -121,7 +121,8 @@ def _saddles(problem, times):
     last = log_z[len(log_F) - 1]
     spline = CubicSpline(log_z[: len(log_F)], log_F)
     fine = np.linspace(first, last, int((last - first) / _FINE))
-    z, cumulant, slope, bend = np.exp(fine), *(spline(fine, k) for k in range(3))
+    z = np.exp(fine)
+    cumulant, slope, bend = (spline(fine, k) for k in range(3))
     radii = np.exp(log_z[: len(log_F)])
     growth = np.array(arms)
     bound, place, width, tilt, early, steady = [], [], [], [], [], []

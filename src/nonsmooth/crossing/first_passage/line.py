@@ -1,6 +1,7 @@
 """First passage of x' = g out of an interval for the state y with white noise, by `transport`."""
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -41,7 +42,8 @@ class Line:
     upper: float
     tol = 1e-7
     relative = True
-    levels, loose = _LEVELS, 1e-4
+    levels: ClassVar[tuple[tuple, ...]] = _LEVELS
+    loose = 1e-4
     cure = "loosen tol"
     # what is taken as 0: probabilities, and values of the transform
     negligible, rounded = 1e-14, 1e-70

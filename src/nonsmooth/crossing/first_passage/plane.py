@@ -41,7 +41,7 @@ class Plane:
     tol, loose = 1e-4, 0.0
     cure = "loosen tol, or use method='monte_carlo'"
     relative = False
-    levels = _LEVELS
+    levels: tuple[tuple, ...] = _LEVELS
     negligible, rounded = 2e-5, 1e-13
     narrow, last, least = 4.0, 1e-7, 1e-6
     inexact = 1e-5  # flow of the nodes that are taken to stand still

@@ -7,6 +7,7 @@ kernel calls into. The cache folder is therefore named after the content of the 
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numba
 
@@ -18,13 +19,14 @@ _CACHE = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
 def kernel(function: Callable, forceinline: bool = False) -> Callable:
     """Compile a function to machine code when it is first called."""
     # Numba reads the folder here, at decoration. It is put back for other users of numba.
-    elsewhere, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _CACHE
+    config: Any = numba.config
+    elsewhere, config.CACHE_DIR = config.CACHE_DIR, _CACHE
     try:
         return numba.njit(
             function, cache=True, nogil=True, error_model="numpy", forceinline=forceinline
         )
     finally:
-        numba.config.CACHE_DIR = elsewhere
+        config.CACHE_DIR = elsewhere
 
 
 def inlined(function: Callable) -> Callable:

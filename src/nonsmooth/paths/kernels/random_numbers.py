@@ -11,7 +11,6 @@ The penalization n does not enter: scenes that differ only in n are driven by th
 
 import hashlib
 import math
-from numbers import Integral
 
 import numpy as np
 
@@ -46,7 +45,7 @@ def generator_words(scene: Scene, seed: int | tuple, block: int) -> np.ndarray:
         If the seed is not a non-negative integer.
     """
     entropy, *labels = seed if isinstance(seed, tuple) else (seed,)
-    if not (isinstance(entropy, Integral) and entropy >= 0):
+    if not (isinstance(entropy, int | np.integer) and entropy >= 0):
         raise SceneError(f"a seed is a non-negative integer, got {entropy!r}; choose one")
     identity = repr((scene.identity, labels)).encode()
     key = int.from_bytes(hashlib.sha256(identity).digest()[:8], "big")
