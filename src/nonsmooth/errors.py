@@ -19,15 +19,3 @@ class AssumptionWarning(UserWarning):
 
 class ToleranceError(NonsmoothError):
     """A tolerance that the method could not meet."""
-
-
-class ConfigError(NonsmoothError):
-    """A configuration that does not fit its schema."""
-
-
-class ArtifactError(NonsmoothError):
-    """A result file that is missing, truncated or not ours."""
-
-
-class CheckError(NonsmoothError):
-    """Results that contradict each other."""

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 import nonsmooth
-from nonsmooth.errors import ArtifactError
+from reproduction.errors import ArtifactError
 from reproduction.files import whole
 
 _MARK = "nonsmooth"  # the `source` attribute starts with it

@@ -4,7 +4,7 @@ import difflib
 
 import jsonschema
 
-from nonsmooth.errors import ConfigError
+from reproduction.errors import ConfigError
 
 
 def validate(config: dict, schema: dict) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from nonsmooth.errors import ArtifactError
+from reproduction.errors import ArtifactError
 
 
 @contextmanager

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nonsmooth.crossing.probability import crossing_probability
-from nonsmooth.errors import CheckError
 from nonsmooth.scenes.scene import Scene
+from reproduction.errors import CheckError
 
 PLAIN = "plain"  # the paper's limit formula, which states no distance to a finite p
 FORMULAS = {

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from nonsmooth.errors import CheckError
 from nonsmooth.scenes.scene import Scene
+from reproduction.errors import CheckError
 from reproduction.tables import scientific
 
 ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7

@@ -7,7 +7,7 @@ import re
 
 import yaml
 
-from nonsmooth.errors import ArtifactError
+from reproduction.errors import ArtifactError
 
 PRINTED = "paper/printed.yaml"
 

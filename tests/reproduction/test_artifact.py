@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from nonsmooth.errors import ArtifactError
 from reproduction import artifact
+from reproduction.errors import ArtifactError
 
 
 def example(values=(1.0, 2.0)):

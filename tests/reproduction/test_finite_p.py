@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nonsmooth.errors import CheckError
+from reproduction.errors import CheckError
 from reproduction.finite_p import FORMULAS, PLAIN, check_stated_errors, powers_of_p
 
 P = np.array([10.0, 100.0, 1000.0])

@@ -2,8 +2,8 @@
 
 import pytest
 
-from nonsmooth.errors import CheckError
 from nonsmooth.scenes.scene import Scene
+from reproduction.errors import CheckError
 from reproduction.gamma2 import compared
 
 SOLVED = {"gamma2": 0.5, "gamma2_error": 1e-6}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nonsmooth.errors import ArtifactError
+from reproduction.errors import ArtifactError
 from reproduction.printed import numbered, printed_values
 
 

@@ -11,12 +11,12 @@ from scipy.special import ndtr, ndtri
 
 from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.counting import crossing_estimate
-from nonsmooth.errors import CheckError
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins
 from nonsmooth.theory.ergodicity import Bound
 from reproduction.errata.record import Erratum, Evidence
+from reproduction.errors import CheckError
 
 TAU = np.array([0.1, 1.0, 10.0])
 SCRIPTS = ROOT / "workflow" / "scripts"

@@ -8,7 +8,8 @@ import xarray as xr
 from conftest import ROOT
 
 import nonsmooth as ns
-from nonsmooth.errors import CheckError, SceneError
+from nonsmooth.errors import SceneError
+from reproduction.errors import CheckError
 from reproduction.speed_against_error.pathwise import BrownianPaths
 from reproduction.speed_against_error.work_precision import (
     Case,

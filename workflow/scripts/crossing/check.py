@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.special import ndtri
 
-from nonsmooth.errors import CheckError
 from reproduction import artifact
+from reproduction.errors import CheckError
 from reproduction.jobs import produce
 from reproduction.tables import sorted_by
 

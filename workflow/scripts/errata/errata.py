@@ -1,8 +1,8 @@
 """Every erratum of the paper: printed, mended and reference values."""
 
-from nonsmooth.errors import CheckError
 from reproduction import artifact
 from reproduction.errata.entries import ERRATA
+from reproduction.errors import CheckError
 from reproduction.jobs import produce
 from reproduction.printed import numbered
 

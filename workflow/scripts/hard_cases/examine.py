@@ -2,8 +2,8 @@
 
 import math
 
-from nonsmooth.errors import CheckError
 from reproduction import artifact
+from reproduction.errors import CheckError
 from reproduction.hard_cases.cases import CASES
 from reproduction.hard_cases.record import DEVIATIONS, REFUSED, WRONG, examine
 from reproduction.jobs import produce

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from nonsmooth.errors import CheckError
 from reproduction import artifact
+from reproduction.errors import CheckError
 from reproduction.jobs import produce
 from reproduction.limit_theorem import (
     allowed_distance,

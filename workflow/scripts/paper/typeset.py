@@ -5,7 +5,7 @@ from pathlib import Path
 
 import typst
 
-from nonsmooth.errors import ArtifactError
+from reproduction.errors import ArtifactError
 from reproduction.files import whole
 from reproduction.jobs import job
 

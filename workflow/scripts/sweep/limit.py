@@ -3,8 +3,8 @@
 import numpy as np
 
 from nonsmooth.crossing.brownian import asymptotic_crossing
-from nonsmooth.errors import CheckError
 from reproduction import artifact
+from reproduction.errors import CheckError
 from reproduction.jobs import produce
 
 ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7

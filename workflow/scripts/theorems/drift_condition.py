@@ -4,11 +4,12 @@ import itertools
 import warnings
 from dataclasses import asdict
 
-from nonsmooth.errors import AssumptionWarning, CheckError
+from nonsmooth.errors import AssumptionWarning
 from nonsmooth.scenes.noises import NOISES, Langevin
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins
 from reproduction import artifact
+from reproduction.errors import CheckError
 from reproduction.jobs import produce
 
 MARGINS = {

@@ -1,11 +1,11 @@
 """Rate of V-uniform ergodicity against the spectral gap, and bound of the Poisson solution."""
 
-from nonsmooth.errors import CheckError
 from nonsmooth.scenes.relaxation import rate_at_infinity
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.spectral_gap import spectral_gap
 from nonsmooth.theory.ergodicity import decay_rate, poisson_bound
 from reproduction import artifact
+from reproduction.errors import CheckError
 from reproduction.jobs import produce
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.special import ndtri
 
-from nonsmooth.errors import CheckError
 from reproduction import artifact
+from reproduction.errors import CheckError
 from reproduction.jobs import produce
 
 FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although nothing is wrong

@@ -1,0 +1,77 @@
+"""Every solver on grids keeps the contract `PoissonSolver`, that of the manual's page as well."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.grids.alternating_solver import AlternatingSolver
+from nonsmooth.grids.direct_solver import DirectSolver
+from nonsmooth.grids.generator import assemble, evaluate
+from nonsmooth.grids.mesh.axes import axes as axes_of
+from nonsmooth.grids.mesh.axes import variables
+from nonsmooth.grids.mesh.box import half_widths
+from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.scenes.symbols import y
+
+PAGE = Path(__file__).parents[3] / "docs" / "how_to" / "add_a_grid_solver.md"
+PLASTIC = ns.Scene("elasto_plastic", n=5, potential="x**2/2")
+COLORED = ns.Scene("elasto_plastic", "langevin", n=5, potential="x**2/2")
+ACCURACY = 1e-9
+
+
+def of_the_page(scene, axes):
+    """Make the solver that the manual shows."""
+    names = {}
+    exec(PAGE.read_text().split("```python\n")[1].split("```")[0], names)
+    return names["IterativeSolver"](scene, axes)
+
+
+MAKERS = {
+    "direct": (PLASTIC, lambda scene, axes: DirectSolver(scene, axes, False)),
+    "direct, mirrored": (PLASTIC, lambda scene, axes: DirectSolver(scene, axes, True)),
+    "alternating": (COLORED, lambda scene, axes: AlternatingSolver(scene, axes, False, 8.0)),
+    "alternating, mirrored": (COLORED, lambda scene, axes: AlternatingSolver(scene, axes, True, 8)),
+    "of the page": (PLASTIC, of_the_page),
+}
+
+
+@pytest.fixture(scope="module", params=MAKERS)
+def made(request):
+    """Make a solver on a coarse grid, its axes and the generator on the whole grid."""
+    scene, make = MAKERS[request.param]
+    axes = axes_of(scene, half_widths(scene, 8.0), dict.fromkeys(variables(scene), 0))
+    return make(scene, axes), axes, assemble(scene, axes)
+
+
+def test_folding_is_undone(made):
+    """Unfold is the inverse of fold, on functions of either parity."""
+    solver, axes, _ = made
+    for f, parity in ((y**3, ODD), (y**2, EVEN)):
+        whole = evaluate(f, axes)
+        assert np.allclose(solver.unfold(solver.fold(whole), parity), whole, rtol=1e-12)
+
+
+def test_solutions_solve_the_equation(made):
+    """-A u = f - E f on the whole grid, where the invariant measure has mass."""
+    solver, axes, A = made
+    masses = np.abs(solver.stationary(ACCURACY))
+    for f, parity in ((y, ODD), (y**2, EVEN)):
+        whole = evaluate(f, axes)
+        u, mean = solver.solve(solver.fold(whole), parity, ACCURACY)
+        residual = -A @ solver.unfold(u, parity) - (whole - mean)
+        assert np.sqrt(masses @ residual**2) < 1e-6 * np.sqrt(masses @ whole**2)
+
+
+def test_means_are_those_of_the_invariant_measure(made):
+    """M' A = 0, m of sum 1, and E f = m' f; the mean of an odd function is 0."""
+    solver, axes, A = made
+    masses = solver.stationary(ACCURACY)
+    assert masses.sum() == pytest.approx(1, abs=1e-12)
+    test = evaluate(y**2, axes)
+    assert abs(masses @ (A @ test)) < 1e-6 * np.max(np.abs(A @ test))
+    _, mean = solver.solve(solver.fold(test), EVEN, ACCURACY)
+    assert mean == pytest.approx(masses @ test, rel=1e-6)
+    _, mean = solver.solve(solver.fold(evaluate(y, axes)), ODD, ACCURACY)
+    assert mean == pytest.approx(0, abs=1e-6)
