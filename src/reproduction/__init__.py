@@ -6,6 +6,8 @@ The workflow's scripts call this package, and it calls the library `nonsmooth`. 
 
 `artifact`
     netCDF files with units, errors and provenance: `dataset`, `write`, `read`, `provenance`.
+`errors`
+    What a user of the workflow can cause: `ConfigError`, `ArtifactError`, `CheckError`.
 `files`
     `whole`: a file is written completely or not at all.
 `jobs`
