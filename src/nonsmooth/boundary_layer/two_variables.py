@@ -5,7 +5,6 @@ q ~ kappa - x - u as x -> -inf, where A u = -g. Functions are odd or even, so th
 discretised on half of a tensor grid. `docs/methods/boundary_layer.md` has the derivation.
 """
 
-import itertools
 import math
 
 import numpy as np
@@ -86,19 +85,26 @@ def _refined_from(scene, coarse, tol, best):
 
 def _refined_along(scene, coarse, symbol, base, best, tol) -> tuple[Refined, np.ndarray]:
     """Refine one variable until it has settled; returns also the values after one refinement."""
-    levels = {}
+    solutions = []
 
-    def solve(level):
-        levels[level] = _solved(scene, coarse.raised(symbol, level), best) if level else base
-        return levels[level]
+    def solve(grid):
+        solutions.append(base if grid is coarse else _solved(scene, grid, best))
+        return solutions[-1]
 
     found = until_agreement(
-        itertools.count(),  # ends with the error of `_solved` where the grid is too large
+        _ever_finer(coarse, symbol),
         solve,
-        lambda solutions: np.abs(solutions[-1] - solutions[-2]),
+        lambda levels: np.abs(levels[-1] - levels[-2]),
         lambda _, change: np.max(change) <= tol / tuning.TWO_VARIABLES.safety,
     )
-    return found, levels[1]
+    return found, solutions[1]
+
+
+def _ever_finer(grid, symbol):
+    """Resolve one variable better and better; `_solved` says where a grid is too large."""
+    while True:
+        yield grid
+        grid = grid.raised(symbol)
 
 
 def _solved(scene, grid, best):
