@@ -17,7 +17,7 @@ from reproduction.plasticity import yielding_oscillator
 SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"
 
 
-def check(config):
+def check(config: dict) -> None:
     """Refuse a configuration that cannot be run, before anything runs.
 
     Raises
@@ -176,43 +176,43 @@ def _check_folders(outputs):
             )
 
 
-def label(number):
+def label(number: float) -> str:
     """Spell a number of the configuration as it stands in file names."""
     return f"{float(number):.17g}"
 
 
-def swept(config):
+def swept(config: dict) -> dict[str, dict]:
     """Return the scenes that the sweep simulates, by their names."""
     return {name: config["sweep"]["scenes"][name] for name in config["sweep"]["simulated"]}
 
 
-def ergodic_scenes(config):
+def ergodic_scenes(config: dict) -> dict[str, dict]:
     """Return the parameters of the scenes of table 7b by their names, in the table's order."""
     scenes = config["sweep"]["scenes"]
     return {name: scenes[name]["scene"] for name in config["theorems"]["ergodicity"]["scenes"]}
 
 
-def shards(topic):
+def shards(topic: dict) -> list[int]:
     """List the shards of a Monte Carlo section of the configuration."""
     return list(range(ceil(topic["paths"] / topic["shard"])))
 
 
-def part(topic, shard):
+def part(topic: dict, shard: str) -> tuple[int, int]:
     """First path of a shard and number of its paths; they do not depend on the other shards."""
     first = int(shard) * topic["shard"]
     return first, min(topic["shard"], topic["paths"] - first)
 
 
-def halving_paths(topic, p):
+def halving_paths(topic: dict, p: str) -> int:
     """Choose so many paths that halving costs the same at every p, but no more than are sampled."""
     return min(topic["paths"], round(topic["halving"]["paths"] * max(topic["p"]) / float(p)))
 
 
-def sweep_halving(topic, p):
+def sweep_halving(topic: dict, p: str) -> int:
     """Choose fewer paths for longer runs, in which halving the step changes less at random."""
     return max(1_000, round(topic["halving_paths"] / max(1.0, float(p) / 100)))
 
 
-def finite(numbers):
+def finite(numbers: list[float]) -> list[float]:
     """Leave out infinity: the paper's scheme needs a finite n."""
     return [number for number in numbers if isfinite(number)]
