@@ -78,7 +78,7 @@ def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
         If a variable is not described or not finite, or the folder cannot be written.
     """
     path = Path(path)
-    dataset = dataset[sorted(dataset.data_vars)].copy()
+    dataset = dataset[sorted(map(str, dataset.data_vars))].copy()
     for name, variable in dataset.variables.items():
         if not {"long_name", "units"} <= variable.attrs.keys():
             raise ArtifactError(f"{path}: variable {name!r} has no long_name or units; add them")

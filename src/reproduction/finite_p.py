@@ -19,7 +19,7 @@ FORMULAS = {
 
 
 def probabilities(
-    scene: Scene, threshold: float, horizons: ArrayLike, p: ArrayLike, options: Mapping
+    scene: Scene, threshold: float, horizons: ArrayLike, p: np.ndarray, options: Mapping
 ) -> tuple[np.ndarray, np.ndarray]:
     """Evaluate W(sqrt(p) b, p T) by one method.
 
@@ -28,7 +28,8 @@ def probabilities(
     scene : Scene
     threshold : float
         b.
-    horizons, p : array_like
+    horizons : array_like
+    p : numpy.ndarray
     options : mapping
         The method and its options, as of `crossing_probability`.
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 
@@ -25,7 +26,7 @@ BLACK, BLUE, ORANGE, SKY, GREEN = "#000000", "#0072B2", "#D55E00", "#56B4E9", "#
 # looks of the curves of a sweep over p
 LOOKS = [(GREEN, (0, (1, 2))), (SKY, (0, (3, 1, 1, 1, 1, 1))), (BLUE, "-."), (BLACK, "--")]
 
-STYLE = {
+STYLE: Any = {
     "axes.grid": True,
     "axes.linewidth": 0.6,
     "axes.spines.right": False,
@@ -101,7 +102,7 @@ def scene_panels(
         top.set_title(f"{noise} noise", fontsize=8, loc="left")
     for bottom in axes[-1]:
         bottom.set_xlabel(xlabel)
-    return figure, axes, lambda s: axes[rows.index(s.model), columns.index(s.noise.kind)]
+    return figure, axes, lambda s: axes[rows.index(s.mechanics.name), columns.index(s.noise.kind)]
 
 
 def from_zero(values: ArrayLike) -> np.ndarray:

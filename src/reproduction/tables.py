@@ -5,11 +5,11 @@ Cells are LaTeX, with mathematics between dollar signs.
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import SupportsFloat
 
 import pandas as pd
 import tylax
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from nonsmooth.scenes.scene import Scene
 from reproduction.files import whole
@@ -70,7 +70,7 @@ def _typst(cell):
     )
 
 
-def scientific(value: ArrayLike, digits: int = 1, bound: bool = False) -> str:
+def scientific(value: SupportsFloat, digits: int = 1, bound: bool = False) -> str:
     """Spell a number as LaTeX mathematics in scientific notation; a bound is rounded up."""
     value = float(value) * (1 + 10.0**-digits / 2 if bound else 1)
     mantissa, exponent = f"{value:.{digits}e}".split("e")
@@ -90,7 +90,7 @@ def symbol(name: str) -> str:
 def described(scene: Scene) -> dict[str, str]:
     """Spell a scene in four cells: its model, noise, state and observable."""
     return {
-        "model": scene.model.replace("_", "-"),
+        "model": scene.mechanics.name.replace("_", "-"),
         "noise": scene.noise.kind,
         "state": ", ".join(map(symbol, scene.state)),
         "$g$": symbol(scene.observable),
