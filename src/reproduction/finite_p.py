@@ -9,9 +9,9 @@ from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.scenes.scene import Scene
 from reproduction.errors import CheckError
 
-PLAIN = "plain"  # the paper's limit formula, which states no distance to a finite p
+ASYMPTOTIC = "asymptotic"  # the paper's formula, which states no distance to a finite p
 FORMULAS = {
-    PLAIN: {"method": "asymptotic"},
+    ASYMPTOTIC: {"method": "asymptotic"},
     "order 1": {"method": "corrected", "order": 1},
     "order 2": {"method": "corrected", "order": 2},
     "order 3": {"method": "corrected", "order": 3},
@@ -59,7 +59,7 @@ def check_stated_errors(p: np.ndarray, off: np.ndarray, allowed: np.ndarray) -> 
         Naming the formula and the first such p.
     """
     for name, bad in zip(FORMULAS, off > allowed, strict=True):
-        if name != PLAIN and bad.any():
+        if name != ASYMPTOTIC and bad.any():
             raise CheckError(
                 f"finite_p: the error of the formula {name!r} is larger than it states at p = "
                 f"{p[bad.any(axis=-1)][0]:g}"

@@ -357,7 +357,7 @@ def _sampled(run):
 
 
 def _largest_underestimated(run):
-    """Largest probability that the plain formula gives significantly too low."""
+    """Largest probability that the asymptotic formula gives significantly too low."""
     too_low = run["difference"].values < -SIGNIFICANT * run["difference_error"].values
     return max(_sampled(run)[too_low], default=0.0)
 

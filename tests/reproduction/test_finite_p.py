@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reproduction.errors import CheckError
-from reproduction.finite_p import FORMULAS, PLAIN, check_stated_errors, powers_of_p
+from reproduction.finite_p import ASYMPTOTIC, FORMULAS, check_stated_errors, powers_of_p
 
 P = np.array([10.0, 100.0, 1000.0])
 KNOWN = np.ones((len(FORMULAS), len(P)), dtype=bool)
@@ -31,7 +31,7 @@ def test_a_power_needs_two_distances():
 def test_an_error_above_the_stated_one_is_refused():
     """Of the corrected formulas; the plain one states none."""
     off = np.zeros((*KNOWN.shape, 1))
-    off[list(FORMULAS).index(PLAIN)] = 1.0
+    off[list(FORMULAS).index(ASYMPTOTIC)] = 1.0
     check_stated_errors(P, off, np.full(off.shape, 0.1))
     off[1, 2] = 0.2
     with pytest.raises(CheckError, match="'order 1' is larger than it states at p = 1000"):

@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 from reproduction.plots import BLACK, BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
 
 LOOKS = {
-    "plain": (ORANGE, "o", "-"),
+    "asymptotic": (ORANGE, "o", "-"),
     "order 1": (BLUE, "s", "--"),
     "order 2": (BLACK, "^", "-."),
     "order 3": (GREEN, "D", (0, (3, 1))),
@@ -33,7 +33,7 @@ def errors(formulas, fit_from):
             linestyle=dashes,
             label=f"{name}: slope ${float(row['slope']):.2f}$",
         )
-        if name != "plain":
+        if name != "asymptotic":
             stated = row["probability_error"].max("horizon")
             axis.plot(p, stated, color=color, linewidth=0.6, linestyle=dashes, alpha=0.7)
     floor = formulas["exact_error"].max("horizon")

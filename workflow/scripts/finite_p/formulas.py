@@ -63,7 +63,7 @@ def formulas(scene, threshold, horizons, p, fit_from, exact_tolerance, resolved)
         "probability_error": (
             every,
             error,
-            "error that it states; of the plain formula, from gamma^2 only",
+            "error that it states; of the asymptotic formula, from gamma^2 only",
         ),
         "exact": (every[1:], exact, "probability by the deterministic method"),
         "exact_error": (every[1:], exact_error, "difference of two resolutions"),

@@ -1,4 +1,4 @@
-"""Evaluate the plain and the corrected formula, and compare them with Monte Carlo."""
+"""Evaluate the asymptotic and the corrected formula, and compare them with Monte Carlo."""
 
 import numpy as np
 from scipy.special import ndtri

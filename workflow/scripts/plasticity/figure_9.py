@@ -6,9 +6,8 @@ from reproduction.plasticity import relaxation_time
 from reproduction.plots import BLUE, GREEN, ORANGE, TEXT_WIDTH, draw, from_zero
 
 COLORS = [GREEN, BLUE, ORANGE]
-# the plain and the corrected formula
 LOOKS = {
-    "formula": ("probability", "difference", (0, (1, 1.5))),
+    "asymptotic": ("probability", "difference", (0, (1, 1.5))),
     "corrected": ("corrected", "corrected_difference", "-"),
 }
 
