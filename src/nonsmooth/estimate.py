@@ -25,7 +25,7 @@ class Estimate:
     seconds: float
 
 
-def require(met, value, error, tol, cure="loosen tol"):
+def require(met: bool, value: float, error: float, tol: float, cure: str = "loosen tol") -> None:
     """Raise unless a relative tolerance of gamma^2 has been met.
 
     Raises

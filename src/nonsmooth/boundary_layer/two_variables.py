@@ -13,10 +13,9 @@ import scipy.linalg
 from nonsmooth.boundary_layer import tuning
 from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.grids.direct_solver import DirectSolver
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.grids.tensor_grid import fitted, solver
+from nonsmooth.grids.tensor_grid import direct_solver, fitted
 from nonsmooth.refine import Refined, until_agreement
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.gamma2_on_grids import gamma2_by_combination
@@ -119,8 +118,7 @@ def _solved(scene, grid, best):
 
 def _milne(scene: Scene, grid) -> np.ndarray | None:
     """Return kappa and the Poisson solution at the start, or None if the grid is too large."""
-    axes, solve = solver(scene, grid)
-    assert isinstance(solve, DirectSolver)  # of two variables
+    axes, solve = direct_solver(scene, grid)
     everywhere = solve.fold(evaluate(scene.numerical_observable(), axes))
     kept = np.flatnonzero(np.abs(everywhere) > 1e-13 * np.max(np.abs(everywhere)))
     if len(kept) > tuning.TWO_VARIABLES.largest:

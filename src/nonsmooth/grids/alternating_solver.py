@@ -36,7 +36,7 @@ class AlternatingSolver:
     scene : Scene
         With a finite n and colored noise.
     axes : dict
-        Maps symbols to axes, see `mesh.axes`.
+        Maps symbols to axes, see `mesh.axes.axes`.
     mirrored : bool
         Whether to use that drift and observable are odd. No node may be its own mirror image.
     shift : float
@@ -192,9 +192,7 @@ class AlternatingSolver:
             "in scenes that mix slowly; loosen tol or use Monte Carlo"
         )
 
-    def solve(
-        self, values: np.ndarray, parity: int, accuracy: float | None = None
-    ) -> tuple[np.ndarray, float]:
+    def solve(self, values: np.ndarray, parity: int, accuracy: float) -> tuple[np.ndarray, float]:
         """Solve -A u = f - E f.
 
         Parameters
@@ -214,15 +212,13 @@ class AlternatingSolver:
         ToleranceError
             If the iteration does not converge.
         """
-        assert accuracy is not None  # an iteration needs one
         solution = self._gmres(values, parity, accuracy)
         if self.mirrored and parity == ODD:
             return solution, 0.0
         return solution, float(self.measure @ solution)
 
-    def stationary(self, accuracy: float | None = None) -> np.ndarray:
+    def stationary(self, accuracy: float) -> np.ndarray:
         """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
-        assert accuracy is not None  # an iteration needs one
         masses = self.unfold(self._gmres(self.measure, EVEN, accuracy, adjoint=True), EVEN)
         return masses / masses.sum()
 

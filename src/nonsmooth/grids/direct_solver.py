@@ -46,7 +46,7 @@ class DirectSolver:
     scene : Scene
         With a finite n.
     axes : dict
-        Maps symbols to axes, see `mesh.axes`.
+        Maps symbols to axes, see `mesh.axes.axes`.
     mirrored : bool
         Whether to use that drift and observable are odd. No node may be its own mirror image.
     """

@@ -60,7 +60,7 @@ class PoissonSolver(Protocol):
         """
 
     def solve(
-        self, values: np.ndarray, parity: int, accuracy: float | None = None, /
+        self, values: np.ndarray, parity: int, accuracy: float, /
     ) -> tuple[np.ndarray, float]:
         """Solve -A u = f - E f.
 
@@ -87,7 +87,7 @@ class PoissonSolver(Protocol):
             If the accuracy is out of reach.
         """
 
-    def stationary(self, accuracy: float | None = None, /) -> np.ndarray:
+    def stationary(self, accuracy: float, /) -> np.ndarray:
         """Masses of the invariant measure.
 
         Parameters

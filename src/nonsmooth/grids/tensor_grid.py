@@ -16,7 +16,7 @@ from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.mesh import box
 from nonsmooth.grids.mesh.axes import axes as axes_of
 from nonsmooth.grids.mesh.axes import variables
-from nonsmooth.grids.solver import ODD
+from nonsmooth.grids.solver import ODD, PoissonSolver
 from nonsmooth.scenes.scene import Scene
 
 
@@ -29,9 +29,9 @@ class Grid:
     ends : dict
         Maps symbols to half widths of the box.
     levels : dict
-        Maps symbols to resolution levels, see `mesh.axes`.
+        Maps symbols to resolution levels, see `mesh.axes.axes`.
     margin : float
-        Of elements outside the box, see `mesh.axes`.
+        Of elements outside the box, see `mesh.axes.axes`.
     shift : float
         Of `AlternatingSolver`.
     """
@@ -58,7 +58,7 @@ class Grid:
         return replace(self, margin=tuning.TENSOR_GRIDS.margin)
 
 
-def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], DirectSolver | AlternatingSolver]:
+def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], PoissonSolver]:
     """Discretise a scene.
 
     Parameters
@@ -74,12 +74,25 @@ def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], DirectSolver |
     solver : PoissonSolver
         Of the scene's Poisson equation.
     """
+    return direct_solver(scene, grid) if len(grid.levels) <= 2 else _alternating(scene, grid)
+
+
+def direct_solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], DirectSolver]:
+    """Discretise a scene with one or two variables, as `solver` does."""
+    axes, mirrored = _discretised(scene, grid)
+    return axes, DirectSolver(scene, axes, mirrored)
+
+
+def _alternating(scene, grid):
+    axes, mirrored = _discretised(scene, grid)
+    return axes, AlternatingSolver(scene, axes, mirrored, grid.shift)
+
+
+def _discretised(scene, grid):
+    """Return the axes, and whether half of the grid is enough: no node is its own mirror image."""
     axes = axes_of(scene, grid.ends, grid.levels, grid.margin)
     nodes = math.prod(len(axis.nodes) for axis in axes.values())
-    mirrored = scene.is_odd() and nodes % 2 == 0  # no node is its own mirror image
-    if len(axes) <= 2:
-        return axes, DirectSolver(scene, axes, mirrored)
-    return axes, AlternatingSolver(scene, axes, mirrored, grid.shift)
+    return axes, scene.is_odd() and nodes % 2 == 0
 
 
 def depth_for(tol: float) -> float:
@@ -140,7 +153,7 @@ def _with_best_shift(scene, grid):
     """Try which shift needs the fewest iterations."""
     count = {}
     for shift in tuning.ALTERNATING_DIRECTIONS.shifts:
-        axes, solve = solver(scene, replace(grid, shift=shift))
+        axes, solve = _alternating(scene, replace(grid, shift=shift))
         solve.most = min(count.values(), default=solve.most)
         g = solve.fold(evaluate(scene.numerical_observable(), axes))
         try:

@@ -281,7 +281,7 @@ def densities_on(
     grid: Grid,
     names: list[str],
     points: Mapping[str, ArrayLike],
-    accuracy: float | None,
+    accuracy: float,
 ) -> dict[tuple[str, ...], np.ndarray]:
     """Marginal densities on one grid.
 
@@ -294,7 +294,7 @@ def densities_on(
     points : dict
         Maps names to points.
     accuracy : float
-        Residual of the solver; a direct one needs none.
+        Residual of the solver, of which a direct one takes no notice.
 
     Returns
     -------

@@ -156,7 +156,7 @@ def moments_on(
     moments, changes : numpy.ndarray, shape (2, t)
         w and v, and what the last Krylov vectors change in them; nan if no projection is stable.
     """
-    axes, solver = tensor_grid.solver(scene, grid)
+    axes, solver = tensor_grid.direct_solver(scene, grid)
     g = solver.fold(evaluate(scene.numerical_observable(), axes))
     u, mean = solver.solve(g, ODD)
     g = g - mean
@@ -269,7 +269,7 @@ def at_start(scene: Scene, axes: dict[Symbol, Axis]) -> Callable:
     ----------
     scene : Scene
     axes : dict
-        See `mesh.axes`.
+        See `mesh.axes.axes`.
 
     Returns
     -------

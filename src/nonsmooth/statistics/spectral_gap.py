@@ -11,7 +11,6 @@ import scipy.sparse.linalg as spla
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import tensor_grid
-from nonsmooth.grids.direct_solver import DirectSolver
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.line import eigenfunctions
@@ -131,8 +130,7 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     rate, error : float
         The error is that of the iteration and of rounding.
     """
-    _, solver = tensor_grid.solver(scene, grid)
-    assert isinstance(solver, DirectSolver)  # of at most two variables
+    _, solver = tensor_grid.direct_solver(scene, grid)
     wanted, slowest = tuning.SPECTRAL_GAP.wanted, []
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
         size = solver.matrix(parity).shape[0]

@@ -72,12 +72,12 @@ def grid(
         Symbol -> array of shape (k,).
     """
     half = max(3, round((points ** (1 / len(names)) - 1) / 2))
-    knot, _, _ = scene.mechanics.penalty.at(scene.n)
+    kink, _, _ = scene.mechanics.penalty.at(scene.n)
     axes = []
     for s in names:
         positive = np.geomspace(tuning.DRIFT_CONDITION.smallest, reach, half)
         if s == scene.mechanics.argument:
-            positive = np.append(positive, knot)
+            positive = np.append(positive, kink)
         axes.append(np.unique(np.concatenate([-positive, [0.0], positive])))
     mesh = np.meshgrid(*axes, indexing="ij")
     return {s: values.ravel() for s, values in zip(names, mesh, strict=True)}

@@ -123,7 +123,7 @@ def _require_grid(scene):
 def _discretised(scene, level, margin=0.0):
     chosen = tuning.ERGODICITY
     grid = tensor_grid.fitted(scene, chosen.depth, chosen.coarse)
-    axes, solver = tensor_grid.solver(scene, grid.at_level(level, margin))
+    axes, solver = tensor_grid.direct_solver(scene, grid.at_level(level, margin))
     return axes, solver, evaluate(scene.numerical_observable(), axes)
 
 

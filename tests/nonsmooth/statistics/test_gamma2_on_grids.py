@@ -76,7 +76,7 @@ def test_three_variables_linear(square):
 
 
 def test_forcing_balance_of_the_elasto_plastic_model():
-    """gamma^2[U' + C_b y] is the white forcing's spectrum at 0 (METHODS, exact identity)."""
+    """gamma^2[U' + C_b y] is the white forcing's spectrum at 0 (the forcing balance)."""
     scene = ns.Scene("elasto_plastic", n=50, potential="x**2/2", observable="x + y")
     found = ns.asymptotic_variance(scene, tol=1e-5)
     assert abs(found.value - 1) <= found.error
@@ -103,7 +103,7 @@ def test_plastic_strain_has_the_growth_rate_of_the_displacement():
 
 
 def test_published_value_of_the_obstacle():
-    """0.441883416, checked by two codes (METHODS section 4)."""
+    """It is 0.441883416, which two codes agreed on."""
     scene = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
     found = ns.asymptotic_variance(scene)
     assert abs(found.value - 0.441883416) <= found.error + 5e-10

@@ -28,7 +28,7 @@ def test_gibbs_density_is_the_grids():
     grid = tensor_grid.fitted(OBSTACLE, tensor_grid.depth_for(1e-3), 1)
     points = {"y": np.linspace(-3, 3, 61), "x": np.linspace(-1.2, 1.2, 61)}
     coarse, fine = (
-        densities_on(OBSTACLE, grid.all_raised(by), ["y", "x"], points, None) for by in (2, 3)
+        densities_on(OBSTACLE, grid.all_raised(by), ["y", "x"], points, 1e-6) for by in (2, 3)
     )
     for name, exact in closed_form(OBSTACLE).items():
         value, error = exact(points[name])

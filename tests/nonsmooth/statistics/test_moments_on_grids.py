@@ -132,7 +132,7 @@ def test_monte_carlo(solved):
     sample = integrals_at(scene, middle["time"].values, sampling, control=False)[:, 0]
     squares = (sample - sample.mean(axis=1, keepdims=True)) ** 2
     error = squares.std(axis=1) / np.sqrt(paths)
-    # the step of 0.01 biases less than a hundredth of a per cent (METHODS section 6)
+    # the step of 0.01 biases less than a hundredth of a per cent
     allowed = 4 * error + 1e-3 * squares.mean(axis=1)
     assert np.all(np.abs(squares.mean(axis=1) - middle["v"].values) <= allowed)
 
@@ -143,7 +143,7 @@ def test_projection_against_the_whole_exponential():
     grid = tensor_grid.fitted(scene, 10.0, 0)
     times = np.array([0.05, 0.6, 4.0, 50.0])
     found, inexact = moments_on_grids.moments_on(scene, grid, times, 1e-8)
-    axes, solver = tensor_grid.solver(scene, grid)
+    axes, solver = tensor_grid.direct_solver(scene, grid)
     g = solver.fold(evaluate(scene.numerical_observable(), axes))
     size = len(g)
     whole = np.zeros((2 * size + 1,) * 2)

@@ -33,7 +33,7 @@ def test_friction_waits_for_the_noise():
 
 
 def test_dry_friction_in_the_limit():
-    """lambda_1 = 2.53719 for n = inf (METHODS section 1)."""
+    """The slowest rate for n = inf is 2.53719."""
     found = ns.spectral_gap(ns.Scene("friction", n=np.inf))
     assert found.value == pytest.approx(2.53719, abs=1e-5)
 
