@@ -21,8 +21,6 @@ from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
-_LEVEL = 0.95  # of the interval
-
 
 def contact_time(scene: Scene) -> float:
     """Time scale of the penalty, which steps must resolve.
@@ -105,18 +103,22 @@ def gamma2_difference(scene: Scene) -> tuple[float, float]:
     return value - limit, error + limit_error
 
 
-def slope(n: ArrayLike, value: ArrayLike, error: ArrayLike) -> tuple[float, float]:
+def slope(
+    n: ArrayLike, value: ArrayLike, error: ArrayLike, level: float = 0.05
+) -> tuple[float, float]:
     """Fit log |value| = c + slope log n by weighted least squares.
 
     Parameters
     ----------
     n, value, error : array_like, shape (k,)
         Values of independent errors; those not above two of their errors are left out.
+    level : float
+        Probability with which the interval misses the slope by chance.
 
     Returns
     -------
     slope, half_width : float
-        With the half width of a 95 % interval by the delta method (the error of the logarithm is
+        With the half width of an interval by the delta method (the error of the logarithm is
         the relative one). If the points scatter about the line more than their errors explain, as
         they do where a further order counts, the scatter takes the place of the errors, with
         Student's factor.
@@ -143,6 +145,6 @@ def slope(n: ArrayLike, value: ArrayLike, error: ArrayLike) -> tuple[float, floa
     rest = y - np.average(y, weights=weight) - found * (x - centre)
     freedom = len(x) - 2
     scatter = np.sum(weight * rest**2) / freedom
-    by_errors = stats.norm.ppf((1 + _LEVEL) / 2) / math.sqrt(spread)
-    by_scatter = stats.t.ppf((1 + _LEVEL) / 2, freedom) * math.sqrt(scatter / spread)
+    by_errors = stats.norm.ppf(1 - level / 2) / math.sqrt(spread)
+    by_scatter = stats.t.ppf(1 - level / 2, freedom) * math.sqrt(scatter / spread)
     return float(found), float(max(by_errors, by_scatter))

@@ -8,7 +8,7 @@ rule measure_rates:
     priority: 50
     params:
         **settings("rates", "scenes", "horizon", "resolution", "paths", "weak"),
-        **settings("rates", longest="longest_step"),
+        **settings("rates", "level", longest="longest_step"),
         seed=config["seed"],
     script:
         "../scripts/rates/measure.py"

@@ -22,7 +22,7 @@ KINDS = {
 }
 
 
-def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
+def measure(scenes, horizon, resolution, longest, paths, weak, level, seed, threads):
     """Measure every scene with a step and with twice the step.
 
     The ensembles of different n are independent, so that the points of a fit are.
@@ -38,6 +38,8 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
     paths : int
     weak : dict
         Horizon, step and paths of the variances.
+    level : float
+        Probability with which an exponent misses its published error by chance.
     seed, threads : int
 
     Returns
@@ -65,8 +67,8 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
             ]
             return _differences(chain, weak["horizon"], samplings)
 
-        found["pathwise"].append(_fitted(n, distances))
-        found["weak"].append(_fitted(n, differences))
+        found["pathwise"].append(_fitted(n, distances, level))
+        found["weak"].append(_fitted(n, differences, level))
     over = ("scene", "point")
     variables = {"n": (over, [entry["n"] for entry in scenes.values()], "penalization")}
     for kind, text in KINDS.items():
@@ -79,7 +81,7 @@ def measure(scenes, horizon, resolution, longest, paths, weak, seed, threads):
             f"{kind}_exponent_error": (
                 "scene",
                 fit[:, 1],
-                "half a 95 % interval, and what twice the step changes",
+                f"half a {1 - level:.0%} interval, and what twice the step changes",
             ),
         }
     return artifact.dataset(
@@ -107,11 +109,11 @@ def _differences(chain, horizon, samplings):
     return np.array([variance_difference(one, horizon, sampling) for one, sampling in pairs]).T
 
 
-def _fitted(n, run):
+def _fitted(n, run, level):
     """Values, errors, values with twice the step, and the exponent of n with its error."""
     (value, error), (coarse, coarse_error) = run(1.0), run(2.0)
-    exponent, half_width = slope(n, value, error)
-    other, _ = slope(n, coarse, coarse_error)
+    exponent, half_width = slope(n, value, error, level)
+    other, _ = slope(n, coarse, coarse_error, level)
     return value, error, coarse, [exponent, half_width + abs(other - exponent)]
 
 
