@@ -1,0 +1,118 @@
+"""The numbers of the text are those of the artifacts, spelt as they stand there."""
+
+import ast
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from reproduction import paper_values
+
+
+def formulas():
+    """Errors at p = 1, 10, 100; the exact values do not resolve order 3 at the last two."""
+    distance = [[0.3, 0.1, 0.03], [0.02, 0.01, 0.001], [0.03, 1e-3, 1e-5], [0.02, 1e-5, 1e-9]]
+    resolved = np.ones((4, 3, 1), dtype=bool)
+    resolved[3, 1:] = False
+    names = ["asymptotic", "order 1", "order 2", "order 3"]
+    constants = dict.fromkeys(paper_values.CONSTANTS, 0.5)
+    constants |= {f"{name}_error": 1e-9 for name in paper_values.CONSTANTS}
+    return xr.Dataset(
+        {
+            "distance": (("formula", "p"), distance),
+            "resolved": (("formula", "p", "horizon"), resolved),
+            "slope": ("formula", [-0.5, -1.0, -1.5, -2.0]),
+        }
+        | constants,
+        {"formula": names, "p": [1.0, 10.0, 100.0]},
+    )
+
+
+@pytest.fixture
+def corrected():
+    """Spell the section on corrected formulas."""
+    contained = dict.fromkeys(("share", "expected", "spread", "least"), 0.947)
+    contained |= {"rarely": 1e-3, "outside": 1e-6, "standard_errors": ("p", [1.0, 2.0])}
+    section = {
+        "horizons": [1, 2],
+        "tabulated": 2,
+        "tolerance": 1e-6,
+        "first_time": 0.5,
+        "fit_from": 100,
+    }
+    return paper_values.finite_p(xr.Dataset(contained), formulas(), section)
+
+
+def test_errors_are_quoted_where_exact_values_resolve_them(corrected):
+    """Others are None; order 2 is better than order 1 from p = 10 on."""
+    assert [row["p"] for row in corrected["errors"]] == ["1", "10", "100"]
+    assert [row["values"][3] is None for row in corrected["errors"]] == [False, True, True]
+    assert corrected["order_2_better"] == "10"
+
+
+def test_bounds_are_rounded_up(corrected):
+    """1e-9 is below what is printed as its bound, also after rounding."""
+    assert corrected["constants_error"].startswith("1.1 times")
+    assert corrected["kappa"] == "0.50000000"
+    assert corrected["share"] == "94.7"
+
+
+def test_scenes_in_which_infinity_is_slower_than_the_gap():
+    """Those whose rate at infinity is below the gap by more than both errors."""
+    found = xr.Dataset(
+        {
+            "rate": ("scene", [2.5, 1.0]),
+            "rate_error": ("scene", [0.1, 0.1]),
+            "gap": ("scene", [2.54, 1.0]),
+            "gap_error": ("scene", [0.1, 0.1]),
+            "far": ("scene", [2.0, 0.9]),
+            "far_error": ("scene", [0.1, 0.1]),
+        },
+        {"scene": ["a", "b"]},
+    )
+    scenes = {name: {"scene": {"model": "elasto_plastic", "noise": "white"}} for name in "ab"}
+    values = paper_values.ergodicity(found, {"step": 0.1, "enlargement": 2}, scenes)
+    assert values["slower"] == [
+        {"model": "elasto-plastic", "noise": "white", "far": "2.00", "gap": "2.54"}
+    ]
+    assert values["deviation"] == "0.20"
+
+
+def test_the_example_of_the_earthquake():
+    """The code names the configured parameters; the tail counts only significant differences."""
+    section = {
+        "ground": {"stiffness": 6.25, "damping": 3.0, "sigma": 3.0},
+        "oscillator": {"n": float("inf"), "damping": 0.1, "potential": "x**2/2"},
+        "paths": 30_000,
+        "duration": 400,
+        "limits": [2, 4, 8],
+        "tolerance": 0.02,
+    }
+    over = ("limit", "duration")
+    deformation = xr.Dataset(
+        {
+            "probability": (over, [[0.01, 0.4, 0.7]]),
+            "difference": (over, [[-0.02, -0.001, 0.1]]),
+            "difference_error": (over, [[0.005, 0.005, 0.005]]),
+            "corrected": (over, [[0.02, 0.4, 0.6]]),
+            "corrected_difference": (over, [[0.0, -0.01, 0.005]]),
+        },
+        {"limit": [4.0], "duration": [10.0, 100.0, 400.0]},
+    )
+    constants = xr.Dataset({"gamma2": 0.05, "gamma2_error": 1e-4, "kappa": 0.3, "kappa_error": 0.1})
+    values = paper_values.plasticity(deformation, constants, section)
+    code = ast.parse(values["code"])
+    assert isinstance(code.body[-1], ast.Expr)
+    assert 'n=float("inf")' in values["code"]
+    assert "limit, duration = 4, 400" in values["code"]
+    assert values["n"] == "oo"
+    assert values["low"] == "0.03"
+    (row,) = values["limits"]
+    assert (row["largest"], row["largest_ratio"], row["largest_at"]) == ("+0.100", "20", "400")
+    assert (row["low_formula"], row["low_sampled"], row["low_at"]) == ("0.0100", "0.0300", "10")
+
+
+def test_entries_of_the_errata_are_counted_without_their_letters():
+    """1, 2a and 2b are three values of two entries."""
+    table = xr.Dataset(coords={"entry": ["1", "2a", "2b"]})
+    assert paper_values.errata(table) == {"rows": "3", "entries": "2"}
