@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class Line:
     """The Milne problem of one variable, by spectral elements."""
 
-    accuracy: float = 1e-8  # absolute, unless asked; chosen: rounding of the constants is 1e-10
+    accuracy: float = 1e-8  # absolute, unless asked; chosen: far below what formulas need
     # chosen: from what suffices for smooth g to where rounding is all that is left
     degrees: tuple[int, ...] = (7, 9, 11, 13, 15, 17, 20)
     centred: float = 1e-9  # largest |E g| over the deviation of g; chosen: above rounding of E g
@@ -18,7 +18,9 @@ class TwoVariables:
     """The Milne problem of two variables, on tensor grids."""
 
     accuracy: float = 1e-3  # absolute, unless asked; chosen: what takes up to two minutes
-    depth: float = 16.0  # the box ends where the density is exp(-16) of its largest; chosen: 1e-7
+    depth: float = (
+        16.0  # the box ends where the density is exp(-16) of its largest; chosen: 1e-7 is left
+    )
     largest: int = 3000  # nodes with g != 0; chosen: a minute of dense linear algebra
     # correlation of g and its Poisson solution below which gamma^2 counts as 0; chosen: above the
     # discretisation error of a gamma^2 that is 0

@@ -7,11 +7,11 @@ or by counting paths. The manual has the derivations and the choice of the metho
 `docs/methods/crossing.md`.
 
 - `probability.crossing_probability`: the public function, which chooses the method.
-- `brownian`: `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`, and the
-  asymptotic formula, `asymptotic_crossing`.
+- `brownian`: `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`,
+  `brownian_exit`, `brownian_exit_density`, and the asymptotic formula, `asymptotic_crossing`.
 - `corrected_formula.corrected_crossing`: corrected formulas with their errors, from the
   distribution functions of `expansion` and the mean over the clock of `random_clock`.
-- `first_passage`: the deterministic method.
+- `first_passage.distribution.deterministic_crossing`: the deterministic method.
 - `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting`.
 - `tuning`: resolutions and switching points.
 """

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 class MethodChoice:
     """What tells which method meets a tolerance first; seconds are those of one core."""
 
-    # of a coarse step of a path, with all that comes on top; fitted: benchmarks/requests.py
+    # of a coarse step of a path, with all that comes on top; fitted: measured on one machine, the
+    # choices that follow are checked by benchmarks/requests.py
     seconds_of_step: float = 4e-9
     # of the deterministic method for one and two variables, for times that grow by the factor
-    # `window`; fitted: benchmarks/requests.py
+    # `window`; fitted: as above
     seconds_solved: tuple[float, float] = (0.4, 8.0)
     window: float = 20.0
-    seconds_corrected: float = 0.05  # of the corrected formula; fitted: benchmarks/requests.py
-    # least error of the corrected formula of the order 3, times p^2; fitted: benchmarks/requests.py
+    seconds_corrected: float = 0.05  # of the corrected formula; fitted: as above
+    # least error of the corrected formula of the order 3, times p^2; fitted: as above
     least_corrected: float = 0.03
     pilot_share: float = 0.1  # of the solver's time, which a pilot may cost; chosen: it is lost
     # tolerance and steps up to which Monte Carlo replaces a solver that fails; chosen: minutes
