@@ -216,8 +216,8 @@ def theorems(drift_condition: xr.Dataset, section: Mapping) -> dict:
         "cases": str(drift_condition.sizes["case"]),
         "points": _count(section["points"]),
         "reach": _power(section["reach"]),
-        "damping": _list(section["damping"]),
-        "n": ", ".join(f"{n:,}" for n in section["n"]),
+        "damping": [_short(damping) for damping in section["damping"]],
+        "n": [f"{n:,}" for n in section["n"]],
         "potentials": [_formula(U, x) for U in section["potentials"]["obstacle"]],
         "langevin": [_formula(v, eta) for v in section["langevin"]],
         "drift": f"{float(drift_condition['drift'].min()):.2f}",
@@ -419,7 +419,7 @@ def _bound(value):
 
 
 def _formula(text, variable):
-    return tylax.latex_to_typst(latex(parse(text, (variable,))))
+    return tylax.latex_to_typst(latex(parse(text, (variable,)), fold_short_frac=True))
 
 
 def _words(name):
