@@ -19,6 +19,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",  # formulas are set without a connection
     "myst_parser",
     "numpydoc",
     "sphinx_gallery.gen_gallery",
@@ -32,6 +33,10 @@ myst_fence_as_directive = []
 
 html_theme = "pydata_sphinx_theme"
 html_title = "nonsmooth"
+# pages without others below them
+html_sidebars = {
+    page: [] for page in ("index", "problem", "how_a_number_is_made", "errors", "workflow", "costs")
+}
 html_static_path = ["_static"]
 html_css_files = ["manual.css"]
 html_theme_options = {
