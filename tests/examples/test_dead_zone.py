@@ -18,7 +18,7 @@ import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.generator import evaluate
-from nonsmooth.paths.schemes import strang
+from nonsmooth.paths.schemes.strang import STRANG
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.symbols import x, y
 
@@ -116,8 +116,8 @@ def test_a_spring_without_exact_flow_is_simulated_by_euler_maruyama(scene, dead_
         model, name="stiffening", penalty=replace(model.penalty, inner=sympy.Integer(1))
     )
     stiffening = scene("x", always)
-    assert strang.handles(scene("x"))
-    assert not strang.handles(stiffening)
+    assert STRANG.handles(scene("x"))
+    assert not STRANG.handles(stiffening)
     end = ns.simulate(stiffening, 10.0, step=0.005, paths=8000, times=[10.0], keep="paths")
     squares = end["y"].values[:, -1] ** 2
     error = np.std(squares) / math.sqrt(len(squares))
