@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage.line import Line
+from nonsmooth.crossing.first_passage.line import LineProblem
 from nonsmooth.errors import ToleranceError
 from nonsmooth.line import eigenfunctions
 
@@ -47,7 +47,7 @@ def on_vertical_line(scene, levels, time):
     """Probability at a time by the trapezoidal rule; nan if it takes too many nodes."""
     # not odd by the letter, for a whole grid: its modes do not come in squares, which lose digits
     whole = replace(scene, observable=f"{scene.observable} + 1e-30")
-    transform = Line(whole, *levels).transform(DEGREE, np.array([time]), 12.0)
+    transform = LineProblem(whole, *levels).transform(DEGREE, np.array([time]), 12.0)
     step = 2 * np.pi / (PERIOD * time)
     z = DECAY / (PERIOD * time) + 1j * step * (np.arange(MOST) + 0.5)
     values = []

@@ -1,18 +1,19 @@
 """Inverse Laplace transform on hyperbolic contours.
 
-f(t) = 1/(2 pi i) int exp(z t) F(z) dz by the trapezoidal rule on z(u) = z_0 + mu sin(iu - a), which
-converges geometrically for F analytic off a sector around the negative axis. The parameters for
-all t in [first, last] are those of Weideman and Trefethen, Math. Comp. 76 (2007) 1341; where f is
-small, a contour through the saddle point of exp(z t) F(z) keeps relative accuracy.
+f(t) = 1/(2 pi i) int exp(z t) F(z) dz is computed by the trapezoidal rule on the hyperbola
+z(u) = z_0 + mu (1 + sin(iu - a)). The error falls geometrically with the number of nodes if F is
+analytic outside of a sector around the negative axis. One hyperbola serves all times of an
+interval, with the parameters of Weideman and Trefethen, Math. Comp. 76 (2007) 1341. Where f is
+small, a hyperbola through the saddle point of exp(z t) F(z) keeps the relative error small.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-_SPARE = 3  # times the nodes, where F grows off the axis
-_FARTHEST = 7.0  # parameter of its last node, exp(7) / 2 saddles away
+from nonsmooth.crossing.first_passage import tuning
 
 
 @dataclass(frozen=True)
@@ -27,11 +28,11 @@ class Contour:
     nodes: np.ndarray
     weights: np.ndarray
 
-    def until(self, count):
+    def until(self, count: int) -> "Contour":
         """Drop the nodes beyond the first `count`."""
         return Contour(self.nodes[:count], self.weights[:count])
 
-    def invert(self, transform, times):
+    def invert(self, transform: np.ndarray, times: np.ndarray) -> np.ndarray:
         """Sum the trapezoidal rule.
 
         Parameters
@@ -47,14 +48,16 @@ class Contour:
         return (np.exp(np.outer(times, self.nodes)) @ (self.weights * transform)).imag
 
 
-def hyperbola(first, last, count, sector=0.0, pole=0.0):
+def hyperbola(
+    first: float, last: float, count: int, sector: float = 0.0, pole: float = 0.0
+) -> Contour:
     """Choose the contour for times between `first` and `last`.
 
     Parameters
     ----------
     first, last : float
     count : int
-        Number of nodes in the upper half plane that times between would need, were F constant.
+        Number of nodes in the upper half plane that these times would need if F were constant.
     sector : float
         F is analytic where |arg(pole - z)| > sector.
     pole : float
@@ -63,7 +66,7 @@ def hyperbola(first, last, count, sector=0.0, pole=0.0):
     Returns
     -------
     Contour
-        Of more nodes than needed, from the axis on: stop where the terms are negligible.
+        With more nodes than needed, from the axis on: stop where the terms are negligible.
     """
     ratio = last / first
 
@@ -81,12 +84,12 @@ def hyperbola(first, last, count, sector=0.0, pole=0.0):
     a = minimize_scalar(slowness, bounds=(least + margin, most - margin), method="bounded").x
     step = reach(a) / count
     mu = (4 * np.pi * a - np.pi**2 + 2 * np.pi * sector) / reach(a) * count / last
-    u = (np.arange(_SPARE * count) + 0.5) * step
+    u = (np.arange(tuning.CONTOURS.spare * count) + 0.5) * step
     nodes = pole + mu * (1 + np.sin(1j * u - a))
     return Contour(nodes, mu * step / np.pi * 1j * np.cos(1j * u - a))
 
 
-def through_saddle(saddle, width, spacing, tilt):
+def through_saddle(saddle: float, width: float, spacing: float, tilt: float) -> Contour:
     """Choose the contour that crosses the axis at the saddle point of exp(z t) F(z).
 
     Parameters
@@ -94,7 +97,7 @@ def through_saddle(saddle, width, spacing, tilt):
     saddle : float
         Positive.
     width : float
-        Standard deviation of exp(z t) F(z) along the contour, were it normal.
+        Width of exp(z t) F(z) along the contour: its standard deviation if it were normal.
     spacing : float
         Of the nodes, relative to what ten digits need.
     tilt : float
@@ -103,14 +106,44 @@ def through_saddle(saddle, width, spacing, tilt):
     Returns
     -------
     Contour
-        Of more nodes than needed, from the axis on: stop where the terms are negligible.
+        With more nodes than needed, from the axis on: stop where the terms are negligible.
     """
-    # a normal integrand sampled at 0.85 standard deviations, a pole at 0 at a quarter of the saddle
-    near = spacing * min(0.85 * width, 0.25 * saddle)
-    # steep arms leave less room beside them in which F does not grow
-    near *= min(1.0, 0.45 + tilt / 0.7)
+    settings = tuning.CONTOURS
+    near = spacing * min(settings.of_width * width, settings.of_saddle * saddle)
+    least, scale = settings.steep
+    near *= min(1.0, least + tilt / scale)
     step = near / (saddle * np.cos(tilt))
-    u = (np.arange(int(_FARTHEST / step)) + 0.5) * step
+    u = (np.arange(int(settings.farthest / step)) + 0.5) * step
     bend = np.sin(1j * u - tilt)
     nodes = saddle * (1 + bend + np.sin(tilt))
     return Contour(nodes, saddle * step / np.pi * 1j * np.cos(1j * u - tilt))
+
+
+def inverted(
+    transform: Callable[[complex], complex], contour: Contour, times: np.ndarray, negligible: float
+) -> np.ndarray:
+    """Evaluate a transform along a contour until its terms are negligible, and invert it.
+
+    Parameters
+    ----------
+    transform : callable
+        F.
+    contour : Contour
+    times : numpy.ndarray, shape (t,)
+        Increasing. Terms are looked at for the first one, at which they are largest.
+    negligible : float
+        Relative to the first term.
+
+    Returns
+    -------
+    numpy.ndarray, shape (t,)
+    """
+    values: list[complex] = []
+    for z, weight in zip(contour.nodes, contour.weights, strict=True):
+        values.append(transform(z))
+        term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
+        if len(values) == 1:
+            largest = term
+        elif term < negligible * largest or len(values) == tuning.CONTOURS.truncation_most:
+            break
+    return contour.until(len(values)).invert(np.array(values), times)

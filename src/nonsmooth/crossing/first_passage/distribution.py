@@ -1,38 +1,37 @@
-"""Distribution of the first time at which int_0^t g leaves an interval.
+"""Distribution of the first time at which int_0^t g leaves an interval, without Monte Carlo.
 
-Its Laplace transform, of `first_passage_line` for one state variable and of `first_passage_plane`
-for two, is inverted, or its survival probability marched in time; from a start far in the tails, a
-normal flight comes before. Two levels of resolution give the error.
+A scene becomes a first-passage problem: a `LineProblem` for one state variable, a `PlaneProblem`
+for two. It is solved on finer and finer levels until two of them agree.
 """
-
-from functools import partial
 
 import numpy as np
 
-from nonsmooth.crossing.first_passage import plane, time_stepping
-from nonsmooth.crossing.first_passage.inversion import by_contours
-from nonsmooth.crossing.first_passage.line import Late, Line
-from nonsmooth.crossing.first_passage.time_stepping import UnstableError
+from nonsmooth.crossing.first_passage import plane, time_stepping, tuning
+from nonsmooth.crossing.first_passage.inversion import Solver, by_contours
+from nonsmooth.crossing.first_passage.line import LineProblem, LineProblemFromAfar
+from nonsmooth.crossing.first_passage.plane import PlaneProblem
+from nonsmooth.crossing.first_passage.problem import (
+    DirectProblem,
+    FirstPassageProblem,
+    LaplaceProblem,
+)
+from nonsmooth.crossing.first_passage.time_stepping import PlaneProblemInTime, UnstableError
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.kinetic import tail_descent
 from nonsmooth.line.potential import depth
-
-# of the decay per relaxation time of a slow crossing, as measured against the second order formula;
-# without symmetry the slow mode is not apart
-_ROUNDING = {True: 1e-14, False: 1e-13}
-_SAFETY = {True: 1.0, False: 3.0}  # without symmetry levels do not converge regularly
-_TAIL = 16.0  # depth of a start beyond which the modes lose digits
-_UNDERFLOW = 1e-300
-_NEGLECTED = 1e-9  # bound of what is left out of the law of a far start
+from nonsmooth.refine import until_agreement
+from nonsmooth.scenes.scene import Scene
 
 
-def deterministic_crossing(scene, lower, upper, times, tol):
+def deterministic_crossing(
+    scene: Scene, lower: float, upper: float, times: np.ndarray, tol: float | None
+) -> dict[str, np.ndarray]:
     """P(int_0^t g leaves (lower, upper) before t).
 
     Parameters
     ----------
     scene : Scene
-        With the state y and white noise, or one to which `first_passage_plane` applies.
+        With the state y and white noise, or one to which `plane` applies.
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite.
     times : numpy.ndarray, shape (k,)
@@ -72,48 +71,49 @@ def deterministic_crossing(scene, lower, upper, times, tol):
         ) from None
 
 
-def default_tolerance(scene):
+def default_tolerance(scene: Scene) -> float | None:
     """Return the absolute error of `deterministic_crossing` unless told; None if it cannot."""
     if scene.is_line:
-        return Line.tol
-    return plane.Plane.tol if plane.applies(scene) else None
+        return tuning.LINE.default_tolerance
+    return tuning.PLANE.default_tolerance if plane.applies(scene) else None
 
 
 def _on_line(scene, lower, upper, times, tol):
-    """`deterministic_crossing` for the state y with white noise."""
-    if _start_depth(scene) > _TAIL:
+    """Solve for the state y with white noise."""
+    depth_of_start = float(depth(scene)(scene.start.get("y", 0.0)))
+    if depth_of_start > tuning.FAR_START.depth:
         return _from_afar(scene, lower, upper, times, tol)
-    problem = Line(scene, lower, upper)
-    return _refined(problem, times, tol, by_contours(problem, times))
+    return refined(LineProblem(scene, lower, upper), times, tol)
 
 
 def _in_plane(scene, lower, upper, times, tol):
-    """`deterministic_crossing` for two state variables."""
-    problem = plane.Plane(scene, lower, upper)
+    """Solve for two state variables: by steps in time if there are few, or else by contours."""
+    problem = PlaneProblem(scene, lower, upper)
     if time_stepping.applies(problem, times):
-        marched = time_stepping.March(scene, lower, upper)
         try:
-            return _refined(marched, times, tol, partial(_marched, marched, times))
-        except UnstableError:  # slabs are not
+            return refined(PlaneProblemInTime(problem), times, tol)
+        except UnstableError:  # slabs are stable on every grid
             pass
-    return _refined(problem, times, tol, by_contours(problem, times))
+    return refined(problem, times, tol)
 
 
 def _from_afar(scene, lower, upper, times, tol):
-    """`_on_line` from a start in the tail: normal at first, then by `Late`."""
-    tail = tail_descent.tail(scene)
+    """Solve for a start in the tails: by a normal law at first, later by `LineProblemFromAfar`."""
+    tail, neglected = tail_descent.tail(scene), tuning.FAR_START.neglected
     distance = upper if tail.towards > 0 else -lower
     passed = np.array([tail.law(t).passed(distance) for t in np.minimum(times, tail.flight)])
-    error = np.full(len(times), _NEGLECTED)
+    error = np.full(len(times), neglected)
     late = times > tail.flight
-    if late.any() and 1 - tail.law(tail.flight).passed(distance) > _NEGLECTED:
+    if late.any() and 1 - tail.law(tail.flight).passed(distance) > neglected:
         left = 1 - tail.law(tail.descent).passed(distance)
-        problem = Late(scene, lower, upper, tail)
-        # a level may no more than halve the error
-        rest = times[late] - tail.descent
-        found = _refined(problem, rest, tol / (2 * left), by_contours(problem, rest))
-        passed[late] = 1 - left * found["survival"]
-        error[late] += 2 * left * found["probability_error"]
+        # half of the tolerance is kept for what is neglected
+        rest = refined(
+            LineProblemFromAfar(scene, lower, upper, tail),
+            times[late] - tail.descent,
+            tol / (2 * left),
+        )
+        passed[late] = 1 - left * rest["survival"]
+        error[late] += 2 * left * rest["probability_error"]
     return {
         "probability": passed,
         "probability_error": error,
@@ -122,63 +122,123 @@ def _from_afar(scene, lower, upper, times, tol):
     }
 
 
-def _marched(problem, times, level, _known, _wanted):
-    return problem.solve(times, *level), np.full(len(times), True)
+def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict[str, np.ndarray]:
+    """Solve a problem on finer and finer levels until two of them agree.
 
+    Parameters
+    ----------
+    problem : FirstPassageProblem
+    times : numpy.ndarray, shape (k,)
+        Increasing, positive.
+    tol : float
+        Absolute error wanted.
 
-def _refined(problem, times, tol, solve):
-    """Refine until two levels agree.
+    Returns
+    -------
+    dict
+        As of `deterministic_crossing`.
 
-    `solve` takes a level, what is known, and the times at which more is wanted; it returns what is
-    known then and where it has been solved anew.
+    Raises
+    ------
+    ToleranceError
+        If `tol` is not met; the message has the error.
     """
-    worst = np.inf
-    first = 0 if tol >= problem.loose else 1
-    wanted, change = np.full(len(times), True), 0.0
-    nothing = np.array([np.zeros(len(times)), np.ones(len(times))])
-    found, _ = solve(problem.levels[first], nothing, wanted)
-    odd = problem.scene.is_odd()
-    for level in problem.levels[first + 1 :]:
-        coarse, (found, solved) = found, solve(level, found, wanted)
-        solution = np.clip(found, 0.0, 1.0)
-        # not clipped before: two contours that both fail would agree on 0 or 1
-        new = _SAFETY[odd] * np.abs(found - coarse) + np.abs(found - solution)
-        change = np.where(solved, new, change)
-        error = _largest_nearby(change, solution if problem.relative else 1 + 0 * change, times)
-        error += problem.inexact * solution + _UNDERFLOW
-        error += _ROUNDING[odd] * problem.scene.damping * times * solution[0] * solution[1]
-        error[0] = np.where(solution[0] == 0, np.maximum(problem.negligible, error[0]), error[0])
-        # the same event: what is known of the rarer of the two is known of both
-        least = error.min(axis=0)
-        error = np.where(error > 1e-12, least + 1e-15, error)
-        if np.all(error <= tol):
-            return {
-                "probability": solution[0],
-                "probability_error": error[0],
-                "survival": solution[1],
-                "survival_error": error[1],
-            }
-        if not error.max() < worst:  # rounding: finer grids do not help
-            break
-        worst = error.max()
-        wanted = np.any(error > tol, axis=0)
-    raise ToleranceError(
-        f"the crossing probability has an error of {error.max():.1e}, above tol = {tol:g}; "
-        f"{problem.cure}"
+    settings, refinement = problem.settings, _Refinement(problem, times, tol)
+    result = until_agreement(
+        settings.levels[0 if tol >= settings.coarse_tolerance else 1 :],
+        refinement.solution,
+        refinement.error,
+        refinement.met,
+        refinement.hopeless,
     )
+    if not result.met:
+        raise ToleranceError(
+            f"the crossing probability has an error of {result.error.max():.1e}, above tol = "
+            f"{tol:g}; {settings.advice}"
+        )
+    solution = np.clip(result.value[0], 0.0, 1.0)
+    return {
+        "probability": solution[0],
+        "probability_error": result.error[0],
+        "survival": solution[1],
+        "survival_error": result.error[1],
+    }
 
 
-def _start_depth(scene):
-    """Logarithm of the largest invariant density over that at the start."""
-    return float(depth(scene)(scene.start.get("y", 0.0)))
+def _solver(problem: FirstPassageProblem, times: np.ndarray) -> Solver:
+    """How a problem of either kind is solved on a level; see `inversion.by_contours`."""
+    if isinstance(problem, LaplaceProblem):
+        return by_contours(problem, times)
+    assert isinstance(problem, DirectProblem)
+    everywhere = np.full(len(times), True)
+    return lambda level, known, wanted: (problem.solve(times, level), everywhere)
+
+
+class _Refinement:
+    """Solutions on finer and finer levels, each anew only at times where it must be better.
+
+    A solution is a pair: the values, shape (2, k), and at which times they are new.
+    """
+
+    def __init__(self, problem: FirstPassageProblem, times: np.ndarray, tol: float):
+        self.problem, self.times, self.tol = problem, times, tol
+        self._solve = _solver(problem, times)
+        self._found = np.array([np.zeros(len(times)), np.ones(len(times))])
+        self._wanted = np.full(len(times), True)
+        self._change: float | np.ndarray = 0.0
+        self._worst = np.inf
+
+    def solution(self, level):
+        """Solve on a level."""
+        self._found, solved = self._solve(level, self._found, self._wanted)
+        return self._found, solved
+
+    def error(self, solutions):
+        """Estimate the errors of the last solution from the difference to the one before."""
+        settings, refinement = self.problem.settings, tuning.REFINEMENT
+        odd = self.problem.scene.is_odd()
+        safety, rounding = (
+            (refinement.safety_odd, refinement.rounding_odd)
+            if odd
+            else (refinement.safety, refinement.rounding)
+        )
+        (coarse, _), (found, solved) = solutions[-2:]
+        solution = np.clip(found, 0.0, 1.0)
+        # the values are compared as they are: if both levels failed, they would agree on 0 or 1
+        change = safety * np.abs(found - coarse) + np.abs(found - solution)
+        self._change = np.where(solved, change, self._change)
+        error = _largest_nearby(
+            self._change, solution if settings.relative else 1 + 0 * self._change, self.times
+        )
+        error += settings.unseen_error * solution + refinement.underflow
+        error += rounding * self.problem.scene.damping * self.times * solution[0] * solution[1]
+        error[0] = np.where(
+            solution[0] == 0, np.maximum(settings.least_probability, error[0]), error[0]
+        )
+        # the two probabilities have the sum 1: the smaller error holds for both
+        least = error.min(axis=0)
+        return np.where(error > refinement.exact, least + refinement.complement, error)
+
+    def met(self, solution, error):
+        """Whether the error is as small as wanted at all times."""
+        return np.all(error <= self.tol)
+
+    def hopeless(self, solution, error):
+        """Whether it does not fall any more, for then it is rounding; else where to go on."""
+        if not error.max() < self._worst:
+            return True
+        self._worst = error.max()
+        self._wanted = np.any(error > self.tol, axis=0)
+        return False
 
 
 def _largest_nearby(errors, values, times):
-    """Largest error within a factor of two in time, for single ones may vanish by chance.
+    """Largest error among neighbouring times, for the difference of two levels may vanish.
 
-    Those of larger values count relative to the value.
+    The error at a time of a larger value counts in proportion to the values.
     """
-    near = np.abs(np.log(times[:, None] / times)) <= np.log(2)
-    values = np.maximum(values, _UNDERFLOW)
+    refinement = tuning.REFINEMENT
+    near = np.abs(np.log(times[:, None] / times)) <= np.log(refinement.nearby)
+    values = np.maximum(values, refinement.underflow)
     share = np.minimum(values[:, :, None] / values[:, None, :], 1.0)
     return np.max(near * share * errors[:, None, :], axis=2)

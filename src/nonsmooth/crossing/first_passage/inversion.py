@@ -1,167 +1,173 @@
-"""Inversion of the Laplace transform of first-passage times on hyperbolic contours.
+"""Inversion of the Laplace transform of first-passage times, for many times at once.
 
-A contour serves times of one window. Where the probability, or the survival probability, is small,
-its contour starts at the saddle point or at the leading pole instead of 0: the error is then
-relative. A problem is that of `first_passage_line` or of `first_passage_plane`.
+The times are divided into windows, each served by one contour on which F(z) = E exp(-z tau) is
+evaluated. With increasing time there are up to four stages:
+
+- Crossings are so rare that Chernoff's bound of their probability is negligible: it is 0.
+- The rise: the contour goes through the saddle point of exp(z t) F(z) / z, which keeps the relative
+  error of small probabilities small.
+- Later, a hyperbola around the poles of F on the negative axis, and the pole of 1/z.
+- The end: the survival probability is small. It is computed from (1 - F(z)) / z, and the hyperbola
+  crosses the axis at the leading pole instead of 0, which keeps its relative error small.
 """
 
-from dataclasses import dataclass
-from functools import partial
-from typing import NamedTuple
+from collections.abc import Callable
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.optimize import root_scalar
 
-from nonsmooth.crossing.first_passage.contours import hyperbola, through_saddle
+from nonsmooth.crossing.first_passage import contours, tuning
+from nonsmooth.crossing.first_passage.problem import ContourLevel, LaplaceProblem
+from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_points
 
-_PER_DECADE = 8  # nodes more for each decade of times
-_SHORTEST = 3.0  # last time over first time, of a hyperbola, at least
-_GROWTH = 1e4  # of the probability, at most, for a contour through a saddle
-# Off the axis the transform may grow, like exp(|z| t) where paths run almost as given. The arms of
-# a contour have such an angle to the left of the vertical that the growth takes at most some share
-# of the decay of exp(z t), at smaller angles, too, or poles lie between: of a hyperbola, for
-# |z| t > _FAR; of a contour through a saddle, beyond the saddle. Not looked at is where
-# exp(z t) < exp(-_NEGLIGIBLY); poles near the axis make the transform grow by a factor only.
-_ARMS = (0.2, 0.4, 0.67)
-_STEEPEST = 0.0
-_FAR, _TAMED, _NEGLIGIBLY, _HARMLESS = 6.0, 0.3, 30.0, 0.7
-_RISEN, _TAME = 0.05, 0.08  # bound of the probability, and share, at the end of the rise
-_MOST = 100  # terms of a contour
-_SURELY = 0.1  # of what is negligible: two levels below, and their difference, leave it so
-_SMALL = 1e-3  # survival probabilities below get contours of their own
-_AXIS = 0.6  # spacing of log z on the axis in the search for saddles
-_LARGEST, _FINE = 150.0, 0.01  # z t at most; spacing of log z of the spline
+Solver = Callable[[ContourLevel, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-class _Hyperbola(NamedTuple):
-    """A kind of hyperbola, for times from `since` times the end of the rise on.
-
-    Attributes
-    ----------
-    sector : float
-        Half angle about the negative axis, of the poles and of what grows there.
-    ratio : float
-        Last time over first time, at most.
-    more : int
-        Nodes more.
-    since : float
-    """
-
-    sector: float
-    ratio: float
-    more: int
-    since: float
-
-
-# what poles off the axis add has decayed after three times the rise
-_EARLY, _STEADY = _Hyperbola(0.9, 4.0, 10, 1.0), _Hyperbola(0.3, 20.0, 3, 3.0)
-
-
-def by_contours(problem, times):
+def by_contours(problem: LaplaceProblem, times: np.ndarray) -> Solver:
     """Prepare the inversion for given times.
 
     Parameters
     ----------
-    problem : first_passage_line.Line or first_passage_plane.Plane
+    problem : LaplaceProblem
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
 
     Returns
     -------
     callable
-        Takes a level of the problem, what is known, shape (2, k), and the times at which more is
-        wanted; returns probability and survival probability, shape (2, k), anew in windows with
-        such a time, and where it is anew.
+        Takes a level of the problem, what is known so far, shape (2, k), and at which times more is
+        wanted, shape (k,). Solves the windows with such a time anew. Returns probability and
+        survival probability, shape (2, k), and at which times they are new.
     """
-    return partial(_solve, problem, times, _saddles(problem, times))
+    saddles = saddle_points(problem, times)
+
+    def solve(level, known, wanted):
+        return _Inversion(problem, times, saddles, level, known, wanted).run()
+
+    return solve
 
 
-@dataclass(frozen=True)
-class _Saddles:
-    """Saddle points on the axis of the integrand exp(z t) F(z) / z of the probability.
+class _Inversion:
+    """The inversion on one level.
 
-    Attributes
+    Parameters
     ----------
-    place, width : numpy.ndarray, shape (k,)
-        z, and the standard deviation along a contour through it, for each time.
-    bound : numpy.ndarray, shape (k,)
-        Logarithm of Chernoff's bound of the probability, the least exp(z t) F(z).
-    tilt : numpy.ndarray, shape (k,)
-        Angle to the vertical of the arms of a contour through it.
-    early, steady : numpy.ndarray of bool, shape (k,)
-        Whether the probability is not small and the transform tame enough for such a hyperbola.
+    problem : LaplaceProblem
+    times : numpy.ndarray, shape (k,)
+    saddles : SaddlePoints
+    level : ContourLevel
+    known, wanted
+        As of `by_contours`.
     """
 
-    place: np.ndarray
-    width: np.ndarray
-    bound: np.ndarray
-    tilt: np.ndarray
-    early: np.ndarray
-    steady: np.ndarray
+    def __init__(
+        self,
+        problem: LaplaceProblem,
+        times: np.ndarray,
+        saddles: SaddlePoints,
+        level: ContourLevel,
+        known: np.ndarray,
+        wanted: np.ndarray,
+    ):
+        self.problem, self.times, self.saddles = problem, times, saddles
+        self.level, self.known, self.wanted = level, known, wanted
+        self.found, self.solved = known.copy(), np.full(len(times), False)
+
+    def run(self):
+        """Solve the stages one after the other."""
+        settings = self.problem.settings
+        begin = int(np.searchsorted(self.saddles.bound, np.log(settings.least_probability)))
+        ends = settings.relative and self.problem.two_sided
+        late = begin + self._first_small(self.known[1, begin:]) if ends else len(self.times)
+        windows = list(_hyperbolic(self.times, self.saddles, begin, late))
+        risen = windows[0][0].start if windows else late
+        self._rise(begin, risen)
+        self._later(windows)
+        if ends:
+            self._end(risen)
+        return self.found, self.solved
+
+    def _first_small(self, survival):
+        return int(np.searchsorted(-survival, -tuning.INVERSION.small))
+
+    def _transform(self, here):
+        return self.problem.transform(
+            self.level.resolution, self.times[here], -self.saddles.bound[here][0]
+        )
+
+    def _store(self, here, values, row=0):
+        """Keep the values of the probability, row 0, or of the survival probability, row 1."""
+        self.found[row, here], self.found[1 - row, here] = values, 1 - values
+        self.solved[here] = True
+
+    def _rise(self, begin, end):
+        """Solve windows in which the probability is still small, the last first."""
+        settings, saddles = self.problem.settings, self.saddles
+        turns = np.cumsum(np.diff(saddles.tilt, prepend=saddles.tilt[0]) != 0) + 1
+        windows = _windows(
+            begin,
+            end,
+            (self.times, settings.window),
+            (np.exp(saddles.bound), tuning.INVERSION.growth),
+            (turns, 1),
+        )
+        # transforms are asked for in the order of times
+        rise = [
+            (here, _of_probability(self._transform(here)))
+            for here in windows
+            if self.wanted[here].any()
+        ]
+        negligible = begin
+        for here, integrand in reversed(rise):
+            last = here.stop - 1  # at whose saddle the integrand is small at earlier times, too
+            contour = contours.through_saddle(
+                saddles.place[last], saddles.width[last], self.level.spacing, saddles.tilt[last]
+            )
+            self._store(
+                here,
+                contours.inverted(integrand, contour, self.times[here], settings.rise_truncation),
+            )
+            # The probability increases with time: if it is negligible here although the bound is
+            # not, it is so at all earlier times.
+            least = tuning.INVERSION.surely * settings.least_probability
+            if settings.relative and abs(self.found[0, here.start]) < least:
+                negligible = here.start
+                break
+        self._store(slice(negligible), np.zeros(negligible))
+
+    def _later(self, windows):
+        """Solve windows on hyperbolas, of given kinds."""
+        for here, kind in windows:
+            if self.wanted[here].any():
+                integrand = _of_probability(self._transform(here))
+                self._store(here, self._on_hyperbola(integrand, here, kind))
+
+    def _end(self, risen):
+        """Solve windows in which the survival probability is small."""
+        kind, late = tuning.INVERSION.steady, risen + self._first_small(self.found[1, risen:])
+        if not self.wanted[late:].any():
+            return
+        pole = _leading_pole(self._transform(slice(late, None)), self.times[late])
+        for here in _windows(late, len(self.times), (self.times, kind.ratio)):
+            if self.wanted[here].any():
+                integrand = _of_survival(self._transform(here))
+                self._store(here, self._on_hyperbola(integrand, here, kind, pole), 1)
+
+    def _on_hyperbola(self, integrand, here, kind, pole=0.0):
+        """Invert on a hyperbola to the right of all poles, of which `pole` is the rightmost."""
+        settings, times = tuning.INVERSION, self.times[here]
+        first, last = times[0], max(times[-1], settings.shortest * times[0])
+        nodes = round(self.level.nodes + kind.more + settings.per_decade * np.log10(last / first))
+        contour = contours.hyperbola(first, last, nodes, kind.sector, pole)
+        return contours.inverted(integrand, contour, times, self.problem.settings.steady_truncation)
 
 
-def _saddles(problem, times):
-    """Find them by a spline of the transform on the axis."""
-    first, last = np.log([0.1 / times[-1], _LARGEST / times[0]])
-    log_z, log_F, arms = np.arange(first, last + _AXIS, _AXIS), [], []
-    for z in np.exp(log_z):
-        # the saddle of the time t is where z t = d log F / d log z, which is less than log F
-        depth = max(1.0, -(1 + _AXIS) * log_F[-1]) if log_F else 1.0
-        transform = problem.near_axis(z, depth)
-        value = transform(z).real
-        if value < problem.rounded:
-            break
-        log_F.append(np.log(value))
-        arms.append([_size(transform, z * np.exp(1j * (np.pi / 2 + arm))) for arm in _ARMS])
-    if len(log_F) < 2:  # log F falls at most by a factor exp(_AXIS) a step: nothing has crossed
-        nothing = np.zeros(len(times))
-        bound, fits = nothing + np.log(problem.rounded), nothing == 0
-        return _Saddles(nothing, nothing, bound, nothing, fits, fits)
-    last = log_z[len(log_F) - 1]
-    spline = CubicSpline(log_z[: len(log_F)], log_F)
-    fine = np.linspace(first, last, int((last - first) / _FINE))
-    z = np.exp(fine)
-    cumulant, slope, bend = (spline(fine, k) for k in range(3))
-    radii = np.exp(log_z[: len(log_F)])
-    growth = np.array(arms)
-    bound, place, width, tilt, early, steady = [], [], [], [], [], []
-
-    def tame(count, share, t, least):
-        decay = radii[:, None] * t * np.sin(_ARMS[:count])
-        seen = (radii[:, None] > least) & (decay < _NEGLIGIBLY)
-        return np.all((growth[:, :count] <= _HARMLESS + share * decay)[seen])
-
-    def hyperbolic(t):
-        risen = np.min(z * t + cumulant) >= np.log(_RISEN)
-        return risen and tame(len(_ARMS), _TAME, t, _FAR / t)
-
-    for t in times:
-        bound.append(np.min(z * t + cumulant))
-        early.append(hyperbolic(t / _EARLY.since))
-        steady.append(hyperbolic(t / _STEADY.since))
-        best = np.argmin(z * t + cumulant - fine)
-        place.append(z[best])
-        fitting = [k for k in (1, 2) if z[best] < radii[-1] and tame(k, _TAMED, t, z[best])]
-        tilt.append(_ARMS[max(fitting) - 1] if fitting else _STEEPEST)
-        # second derivative in z of the exponent, log z among it
-        width.append(z[best] / np.sqrt(max(bend[best] - slope[best] + 1, 0.1)))
-    return _Saddles(
-        np.array(place),
-        np.array(width),
-        np.maximum.accumulate(bound),
-        np.array(tilt),
-        np.array(early),
-        np.array(steady),
-    )
+def _of_probability(transform):
+    return lambda z: transform(z) / z
 
 
-def _size(transform, z):
-    """Logarithm of |F|; infinite where it cannot be told."""
-    try:
-        return np.log(abs(transform(z)))
-    except np.linalg.LinAlgError:
-        return np.inf
+def _of_survival(transform):
+    return lambda z: (1 - transform(z)) / z
 
 
 def _windows(first, end, *growing):
@@ -172,101 +178,23 @@ def _windows(first, end, *growing):
         first = int(last)
 
 
-def _hyperbolic(times, saddles, begins, end):
-    """Windows after the rise and before `end`, with the kind of hyperbola."""
+def _hyperbolic(times, saddles, begin, end):
+    """Windows that hyperbolas serve, before `end`, with the kind of hyperbola."""
     first, steady = (
-        np.max(np.flatnonzero(~fits) + 1, initial=begins)
-        for fits in (saddles.early, saddles.steady)
+        np.max(np.flatnonzero(~fits) + 1, initial=begin) for fits in (saddles.early, saddles.steady)
     )
     while first < end:
-        kind = _EARLY if first < steady else _STEADY
+        kind = tuning.INVERSION.early if first < steady else tuning.INVERSION.steady
         last = int(np.searchsorted(times, times[first] * kind.ratio, "right"))
         yield slice(first, min(end, last)), kind
         first = last
 
 
-def _solve(problem, times, saddles, level, known, wanted):
-    resolution, count, spacing = level
-    begins = np.searchsorted(saddles.bound, np.log(problem.negligible))
-    found, solved = known.copy(), np.full(len(times), False)
-
-    def transform(where):
-        return problem.transform(resolution, times[where], -saddles.bound[where][0])
-
-    def of_probability(transform):
-        return lambda z: transform(z) / z
-
-    def of_survival(transform):
-        return lambda z: (1 - transform(z)) / z
-
-    def around_poles(where, kind, first=0.0):
-        """Contour to the right of the poles, of which `first` is the largest."""
-        begin, end = times[where][0], max(times[where][-1], _SHORTEST * times[where][0])
-        nodes = round(count + kind.more + _PER_DECADE * np.log10(end / begin))
-        return hyperbola(begin, end, nodes, kind.sector, first)
-
-    def store(here, values, row=0):
-        found[row, here], found[1 - row, here] = values, 1 - values
-        solved[here] = True
-
-    tails = problem.relative and problem.two_sided
-    late = begins + np.searchsorted(-known[1, begins:], -_SMALL) if tails else len(times)
-    risen = list(_hyperbolic(times, saddles, begins, late))
-    rises = risen[0][0].start if risen else late
-    turns = np.cumsum(np.diff(saddles.tilt, prepend=saddles.tilt[0]) != 0) + 1
-    rise = [
-        (here, of_probability(transform(here)))
-        for here in _windows(
-            begins, rises, (times, problem.narrow), (np.exp(saddles.bound), _GROWTH), (turns, 1)
-        )
-        if wanted[here].any()
-    ]
-    negligible = begins
-    for here, of_rise in reversed(rise):
-        last = here.stop - 1  # at whose saddle the integrand is small at all earlier times, too
-        contour = through_saddle(
-            saddles.place[last], saddles.width[last], spacing, saddles.tilt[last]
-        )
-        store(here, _inverted(of_rise, contour, times[here], problem.last))
-        # the probability increases: earlier ones are negligible, too, and the bound was too weak
-        if problem.relative and abs(found[0, here.start]) < _SURELY * problem.negligible:
-            negligible = here.start
-            break
-    store(slice(negligible), np.zeros(negligible))
-    for here, kind in risen:
-        if wanted[here].any():
-            integrand = of_probability(transform(here))
-            contour = around_poles(here, kind)
-            store(here, _inverted(integrand, contour, times[here], problem.least))
-    late = rises + np.searchsorted(-found[1, rises:], -_SMALL)
-    if tails and wanted[late:].any():
-        pole = _leading_pole(transform(slice(late, None)), times[late])
-        for here in _windows(late, len(times), (times, _STEADY.ratio)):
-            if wanted[here].any():
-                integrand = of_survival(transform(here))
-                contour = around_poles(here, _STEADY, pole)
-                store(here, _inverted(integrand, contour, times[here], problem.least), 1)
-    return found, solved
-
-
-def _inverted(transform, contour, times, last):
-    """Sum until the terms at the first time, where they are largest, are negligible."""
-    values = []
-    for z, weight in zip(contour.nodes, contour.weights, strict=True):
-        values.append(transform(z))
-        term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
-        if len(values) == 1:
-            largest = term
-        elif term < last * largest or len(values) == _MOST:
-            break
-    return contour.until(len(values)).invert(np.array(values), times)
-
-
 def _leading_pole(transform, time):
-    """Largest pole of E exp(-z tau); at `time`, the survival probability is about _SMALL."""
+    """Rightmost pole of F; at `time`, the survival probability has just become small."""
 
     def inverse(z):
         return (1 / transform(z)).real
 
-    rate = -np.log(_SMALL) / time
+    rate = -np.log(tuning.INVERSION.small) / time
     return float(root_scalar(inverse, x0=-rate / 2, x1=-0.8 * rate, rtol=1e-14).root)

@@ -1,22 +1,21 @@
-"""First passage of x' = g out of an interval for two state variables, by doubling slabs."""
+"""First passage of int_0^t g for two state variables, by adding and doubling of slabs."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
+from nonsmooth.crossing.first_passage import tuning
+from nonsmooth.crossing.first_passage.problem import ContourSettings, LaplaceProblem
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.adding_doubling import half_space, slab
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
-from nonsmooth.kinetic.ordinates_plane import boxed, plane_ordinates
-
-# resolution of the grid; nodes of a contour for a single time, and their spacing during the rise
-_LEVELS = ((0, 7, 1.2), (1, 8, 1.05), (2, 9, 0.95), (3, 10, 0.9))
-_FEWEST = 7  # doublings at resolution 0
-_THIN = 0.1  # thinnest slab at resolution 0, relative to the way that g goes while it relaxes
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
+from nonsmooth.scenes.scene import Scene
 
 
-def applies(scene):
+def applies(scene: Scene) -> bool:
     """Whether the scene has two state variables, white or Langevin noise, odd g and drift."""
     return (
         scene.dimension == 2
@@ -26,10 +25,10 @@ def applies(scene):
     )
 
 
-class Plane:
+class PlaneProblem(LaplaceProblem):
     """A scene with two state variables to which this module `applies`, and an interval.
 
-    One grid serves all times; probabilities have an absolute error.
+    The resolution of a level is that of the grid and of the slabs. One grid serves all times.
 
     Parameters
     ----------
@@ -38,46 +37,68 @@ class Plane:
         lower < 0 < upper, one of them possibly infinite.
     """
 
-    tol, loose = 1e-4, 0.0
-    cure = "loosen tol, or use method='monte_carlo'"
-    relative = False
-    levels: tuple[tuple, ...] = _LEVELS
-    negligible, rounded = 2e-5, 1e-13
-    narrow, last, least = 4.0, 1e-7, 1e-6
-    inexact = 1e-5  # flow of the nodes that are taken to stand still
-
-    def __init__(self, scene, lower, upper):
+    def __init__(self, scene: Scene, lower: float, upper: float):
         self.scene, self.lower, self.upper = scene, lower, upper
         self._ends = boxed(scene)
-        self._grids = {}
+        self._grids: dict[int, PlaneOrdinates] = {}
 
-    def near_axis(self, _radius, _depth):
-        """Return z -> E exp(-z tau) on the coarsest grid."""
-        return self._on(0, 1 / self.scene.damping)
+    @property
+    def settings(self) -> ContourSettings:
+        """How accurate the problem is, and its levels."""
+        return tuning.PLANE
 
-    def transform(self, resolution, times, _rarity):
-        """Return z -> E exp(-z tau)."""
-        return self._on(resolution, times[0])
+    def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
+        """Return F on the coarsest grid; see `LaplaceProblem`."""
+        return self._on_grid(0, 1 / self.scene.damping)
 
-    def _on(self, resolution, time):
-        if resolution not in self._grids:  # of the shortest time, which is asked for first
-            self._grids[resolution] = self._grid(resolution, time)
+    def transform(
+        self, resolution: int, times: np.ndarray, rarity: float
+    ) -> Callable[[complex], complex]:
+        """Return F on a grid of some resolution; see `LaplaceProblem`."""
+        return self._on_grid(resolution, times[0])
+
+    def discretised(self, level: int, time: float) -> PlaneOrdinates:
+        """Make a grid.
+
+        Parameters
+        ----------
+        level : int
+            Of resolution, from 0.
+        time : float
+            Shortest time of interest.
+        """
+        if ordinates_gibbs.applies(self.scene):
+            return gibbs_ordinates(self.scene, self._ends, level)
+        return plane_ordinates(self.scene, self._ends, level, time)
+
+    def mean_duration(self, time: float) -> float:
+        """Mean of the lesser of the first passage time and of an exponential time of mean `time`.
+
+        It is at least a small part of `time`.
+        """
+        z = 1 / time
+        mean = (1 - self.coarse_transform(z, 0.0)(z)) / z
+        return max(mean, tuning.SLABS.least * time)
+
+    def _on_grid(self, resolution, time):
+        if resolution not in self._grids:  # the shortest time is asked for first
+            self._grids[resolution] = self.discretised(resolution, time)
         grid = self._grids[resolution]
         return lambda z: first_passage(grid, z, self.lower, self.upper, resolution)
 
-    def _grid(self, resolution, time):
-        if ordinates_gibbs.applies(self.scene):
-            return gibbs_ordinates(self.scene, self._ends, resolution)
-        return plane_ordinates(self.scene, self._ends, resolution, time)
 
-
-def first_passage(grid, z, lower, upper, resolution):
+def first_passage(
+    grid: PlaneOrdinates, z: complex, lower: float, upper: float, resolution: int
+) -> complex:
     """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
+
+    The start divides the interval into two slabs. Their reflection and transmission give the values
+    at the start where the flow enters either of them.
 
     Parameters
     ----------
     grid : PlaneOrdinates
-    z : float or complex
+    z : complex
     lower, upper : float
         Of opposite signs; one may be infinite.
     resolution : int
@@ -85,12 +106,13 @@ def first_passage(grid, z, lower, upper, resolution):
 
     Returns
     -------
-    float or complex
+    complex
     """
-    thin = _THIN * grid.way / 2**resolution
+    settings = tuning.SLABS
+    thin = settings.thin * grid.way / 2**resolution
 
     def made(thickness):
-        doublings = max(_FEWEST + resolution, math.ceil(math.log2(thickness / thin)))
+        doublings = max(settings.fewest + resolution, math.ceil(math.log2(thickness / thin)))
         return slab(grid, z, thickness, doublings)
 
     one, ones = np.eye(len(grid.speeds)), grid.ones[: len(grid.speeds)]

@@ -1,13 +1,15 @@
-"""First passage of x' = g out of an interval for two state variables, marched in time.
+"""First passage of int_0^t g for two state variables, by steps in time.
 
-The probability q(t, x, s) that x stays inside until t, from a state s, solves q_t = A q + g q_x,
-q(0) = 1, q = 0 where the flow leaves. Strang's splitting: exp(A t) is a dense matrix on the grid of
-the state, and the flow at the speed g a small one on discontinuous elements in x, graded to the
-walls. Where crossings take a few relaxation times, this is much faster than the Laplace transform,
-which grows off the axis there; over many of them it takes too many steps.
+The probability q(t, x, Z) that x + int_0^t g stays inside of the interval until t, if the state
+begins at Z, solves q_t = A q + g q_x with q = 1 at t = 0 and q = 0 where the flow leaves. Strang's
+splitting alternates exp(A t), a dense matrix on the grid of the state, and the transport by g, a
+small matrix for each value of g on discontinuous elements in x, which are graded towards the
+thresholds. If crossings take a few relaxation times, this is much faster than the Laplace
+transform, which grows off the axis then; if they take many, there are too many steps.
 
-With odd g and drift q(x, s) of an interval is q(-x, -s) of its mirror image. Even and odd functions
-of s are those of half of the grid; an interval that is not its own image is marched with it.
+For odd g and drift, q of an interval at (x, Z) is q of its mirror image at (-x, -Z). So even and
+odd functions of Z are known from half of the grid of the state, if an interval that is not its own
+mirror image is solved together with it.
 """
 
 import math
@@ -16,78 +18,61 @@ import numpy as np
 import scipy.linalg
 from scipy.interpolate import CubicSpline
 
-from nonsmooth.crossing.first_passage.plane import Plane
+from nonsmooth.crossing.first_passage import tuning
+from nonsmooth.crossing.first_passage.plane import PlaneProblem
+from nonsmooth.crossing.first_passage.problem import DirectProblem, Settings
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import discontinuous
 from nonsmooth.grids.grading import graded
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.kinetic import ordinates_gibbs
-from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
-from nonsmooth.kinetic.ordinates_plane import plane_ordinates
-
-# resolution of the state; degree in x, and its smallest element over the lesser of the distance and
-# of the way that g goes while it relaxes; steps, relative to the longest
-_LEVELS = ((1, 3, 2e-2, 1.4), (4, 4, 1e-2, 1.0), (5, 4, 5e-3, 0.7), (6, 4, 2.5e-3, 0.5))
-_RATIO = 2.0  # of neighbouring elements in x
-_LONGEST = 0.1  # step, in relaxation times of the damping
-_FIRST, _EARLY = 5e-3, 4.0  # first step over the mean duration, which is cut at relaxation times
-_PER_TIME = 100.0  # steps are doubled when that many have been made
-_REACHED = 6.0  # end of the axis where there is no wall, in standard deviations
-_SLOW = 8.0  # the spread of int g is that of a correlation time of half so many relaxation times
-_GONE = 1e-6  # survival that is taken as 0
-_SHORT = 500.0  # relaxation times that are marched
-_TAIL = 15.0  # mean durations after which nothing is left, but in rare cases
-_MOST = 20_000  # steps
-# Beyond [0, 1] by so much, the solution grows; by less, elements overshoot where a front passes
-_UNSTABLE = 1e-3
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
 
 
 class UnstableError(Exception):
     """A grid whose generator is far from dissipative, so that the solution grows."""
 
 
-def applies(problem, times):
-    """Whether all is over, or the last time reached, within some hundred relaxation times.
+def applies(problem: PlaneProblem, times: np.ndarray) -> bool:
+    """Whether all has crossed, or the last time is reached, within some hundred relaxation times.
 
     Parameters
     ----------
-    problem : Plane
+    problem : PlaneProblem
     times : numpy.ndarray
 
     Returns
     -------
     bool
     """
-    end = min(times[-1], _TAIL * _duration(problem, times[-1]))
-    return end * problem.scene.damping <= _SHORT
+    settings = tuning.TIME_STEPPING
+    end = min(times[-1], settings.tail * problem.mean_duration(times[-1]))
+    return end * problem.scene.damping <= settings.short
 
 
-def _duration(problem, time):
-    """Mean of the lesser of the first passage and of about `time`."""
-    z = 1 / time
-    return max((1 - problem.near_axis(z, None)(z)) / z, 1e-6 * time)
-
-
-class March(Plane):
-    """As `first_passage_plane.Plane`, solved in time.
+class PlaneProblemInTime(DirectProblem):
+    """A `PlaneProblem`, solved by steps in time.
 
     Parameters
     ----------
-    scene, lower, upper
-        As of `Plane`.
+    plane : PlaneProblem
     """
 
-    levels, loose = _LEVELS, 1e-3
-    inexact = 2e-5  # the same, and what levels that refine one variable leave of the other
+    def __init__(self, plane: PlaneProblem):
+        self.scene, self.lower, self.upper = plane.scene, plane.lower, plane.upper
+        self._plane = plane
 
-    def solve(self, times, resolution, degree, finest, shorter):
-        """Probability and survival probability on one grid.
+    @property
+    def settings(self) -> Settings:
+        """How accurate the problem is, and its levels."""
+        return tuning.PLANE_IN_TIME
+
+    def solve(self, times: np.ndarray, level: tuning.StepLevel) -> np.ndarray:
+        """Probability and survival probability on one level.
 
         Parameters
         ----------
         times : numpy.ndarray, shape (k,)
-        resolution, degree, finest, shorter
-            An entry of `levels`.
+        level : StepLevel
 
         Returns
         -------
@@ -97,46 +82,54 @@ class March(Plane):
         ------
         ToleranceError
             If it takes too many steps.
+        UnstableError
+            If the solution grows.
         """
-        damping, last = self.scene.damping, times[-1]
-        duration = _duration(self, last)
-        scale = min(duration, 1 / damping)
-        if ordinates_gibbs.applies(self.scene):
-            grid = gibbs_ordinates(self.scene, self._ends, resolution)
-        else:
-            grid = plane_ordinates(self.scene, self._ends, resolution, scale)
-        spread = grid.way * damping * min(last, math.sqrt(_SLOW * last / damping))
-        line = _Line(
+        settings, damping, last = tuning.TIME_STEPPING, self.scene.damping, times[-1]
+        duration = self._plane.mean_duration(last)
+        grid = self._plane.discretised(level.resolution, min(duration, 1 / damping))
+        spread = grid.way * damping * min(last, math.sqrt(settings.slow * last / damping))
+        interval = _Interval(
             self.lower,
             self.upper,
-            degree,
-            finest * min(grid.way, -self.lower, self.upper),
-            _REACHED / math.sqrt(shorter) * spread,
+            level.degree,
+            level.finest * min(grid.way, -self.lower, self.upper),
+            settings.reached / math.sqrt(level.step) * spread,
         )
-        first = shorter * _FIRST * min(duration, _EARLY / damping)
-        at, values = _march(grid, line, first, shorter * _LONGEST / damping, last)
+        first = level.step * settings.first * min(duration, settings.early / damping)
+        at, values = _survival(grid, interval, first, level.step * settings.longest / damping, last)
         found = np.interp(times, [at[-1]], values[-1:])
         inside = times <= at[-1]
         found[inside] = CubicSpline(at, values)(times[inside])
         return np.clip([1 - found, found], 0.0, 1.0)
 
 
-class _Line:
-    """Elements in x, of an interval and of its mirror image unless they are the same.
+class _Interval:
+    """Elements in x: of an interval, and of its mirror image unless they are the same.
+
+    Parameters
+    ----------
+    lower, upper : float
+    degree : int
+        Polynomial degree.
+    finest : float
+        Smallest element, next to a threshold.
+    reach : float
+        Where the elements end if there is no threshold.
 
     Attributes
     ----------
     slopes : dict
-        Derivative for each sign of g, taken from where the flow goes.
+        Derivative for each sign of g, upwinded: values at a face are taken from where g points.
     row : numpy.ndarray, shape (k,)
         Interpolates at x = 0 from the upper half of the nodes.
     """
 
-    def __init__(self, lower, upper, degree, finest, reach):
+    def __init__(self, lower: float, upper: float, degree: int, finest: float, reach: float):
         above = _towards(upper, finest, reach, -lower)
         below = _towards(-lower, finest, reach, upper)
         edges = np.concatenate([-below[::-1], [0.0], above])
-        # beyond a wall q = 0: an element there that is left out again
+        # beyond a threshold q = 0: an element is put there, for upwinding, and left out again
         walls = np.isfinite([lower, upper])
         padded = np.concatenate([2 * edges[:1][walls[:1]], edges, 2 * edges[-1:][walls[1:]]])
         axis = discontinuous(padded, degree)
@@ -159,16 +152,17 @@ class _Line:
 
 
 def _towards(wall, finest, reach, other):
-    """Edges from 0, left out, to a wall; if there is none, as far as anything returns from."""
+    """Edges from 0, left out, to a threshold, or as far as paths return from if there is none."""
+    ratio = tuning.TIME_STEPPING.ratio
     if math.isfinite(wall):
-        return np.append(wall - graded(wall, finest, _RATIO)[1:], wall)
-    return graded(max(reach, other), other / 2, _RATIO)[::-1]
+        return np.append(wall - graded(wall, finest, ratio)[1:], wall)
+    return graded(max(reach, other), other / 2, ratio)[::-1]
 
 
-class _Steps:
-    """The two factors of a step of given length, which can be doubled."""
+class _SplitStep:
+    """The two factors of Strang's splitting, for a step whose length can be doubled."""
 
-    def __init__(self, grid, line, step):
+    def __init__(self, grid: PlaneOrdinates, interval: _Interval, step: float):
         self.step = step
         self.many = len(grid.speeds)
         self.mixing = {
@@ -180,7 +174,7 @@ class _Steps:
         )
         speeds = speeds * np.max(np.abs(grid.speeds))
         self.flows = [
-            scipy.linalg.expm(step / 2 * g * line.slopes[1 if g > 0 else -1]).T for g in speeds
+            scipy.linalg.expm(step / 2 * g * interval.slopes[1 if g > 0 else -1]).T for g in speeds
         ]
 
     def doubled(self):
@@ -190,11 +184,12 @@ class _Steps:
         self.flows = [matrix @ matrix for matrix in self.flows]
 
     def apply(self, even, odd):
-        """Advance q, of which `even` and `odd` in the state are known for the upper half in x."""
+        """Advance q by a step; its even and odd parts in the state are given for x > 0."""
         even, odd = self._flow(even, odd)
         return self._flow(self.mixing[EVEN] @ even, self.mixing[ODD] @ odd)
 
     def _flow(self, even, odd):
+        """Transport by g for half a step, at the nodes that move."""
         half, moving = even.shape[1], slice(self.many)
         sum_, difference = even[moving] + odd[moving], even[moving] - odd[moving]
         values = np.hstack([difference[:, ::-1], sum_])
@@ -206,21 +201,24 @@ class _Steps:
         return even, odd
 
 
-def _march(grid, line, first, longest, last):
+def _survival(grid, interval, first, longest, last):
     """Survival probability from the start at times from 0 to `last`, or until it is 0."""
-    even = np.outer(grid.ones, np.ones(len(line.row)))
-    odd = np.zeros((grid.generator[ODD].shape[0], len(line.row)))
-    steps = _Steps(grid, line, first)
+    settings = tuning.TIME_STEPPING
+    even = np.outer(grid.ones, np.ones(len(interval.row)))
+    odd = np.zeros((grid.generator[ODD].shape[0], len(interval.row)))
+    step = _SplitStep(grid, interval, first)
     times, values = [0.0], [1.0]
-    while times[-1] < last and values[-1] > _GONE:
-        if times[-1] >= _PER_TIME * steps.step and 2 * steps.step <= longest:
-            steps.doubled()
-        even, odd = steps.apply(even, odd)
-        times.append(times[-1] + steps.step)
-        values.append(grid.start[EVEN] @ (even @ line.row) + grid.start[ODD] @ (odd @ line.row))
-        if not -_UNSTABLE < values[-1] < 1 + _UNSTABLE:
+    while times[-1] < last and values[-1] > settings.gone:
+        if times[-1] >= settings.per_length * step.step and 2 * step.step <= longest:
+            step.doubled()
+        even, odd = step.apply(even, odd)
+        times.append(times[-1] + step.step)
+        values.append(
+            grid.start[EVEN] @ (even @ interval.row) + grid.start[ODD] @ (odd @ interval.row)
+        )
+        if not -settings.unstable < values[-1] < 1 + settings.unstable:
             raise UnstableError(f"a survival probability of {values[-1]:g}")
-        if len(times) > _MOST:
+        if len(times) > settings.most:
             raise ToleranceError(
                 f"survival is {values[-1]:.1g} still after {times[-1]:.3g}; "
                 "use method='monte_carlo'"

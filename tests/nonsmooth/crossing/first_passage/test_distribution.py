@@ -7,7 +7,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import erfc
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage import inversion as inversion
+from nonsmooth.crossing.first_passage import contours
 from nonsmooth.crossing.first_passage.contours import hyperbola
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.kinetic.case_modes import first_passage
@@ -169,14 +169,14 @@ class TestDeterministic:
     def test_contours_end_where_crossings_are_negligible(self, monkeypatch):
         """Earlier times get none, though without a good bound: at most one at each level."""
         begins = []
-        inverted = inversion._inverted
+        inverted = contours.inverted
 
         def recorded(*contour):
             found = inverted(*contour)
             begins.append(abs(found[0]))
             return found
 
-        monkeypatch.setattr(inversion, "_inverted", recorded)
+        monkeypatch.setattr(contours, "inverted", recorded)
         times = [0.01, 0.1, 0.3, 1.0, 5.0, 10.0, 20.0]
         found = exact(0.6, times, 0.01, SKEWED, tol=1e-3)  # by two levels
         assert np.sum(np.array(begins) < 1e-15) <= 2

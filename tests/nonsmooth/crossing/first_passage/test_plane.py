@@ -6,8 +6,8 @@ import scipy.sparse as sp
 from scipy.integrate import simpson
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage import plane as plane
-from nonsmooth.crossing.first_passage.time_stepping import March
+from nonsmooth.crossing.first_passage import plane, tuning
+from nonsmooth.crossing.first_passage.time_stepping import PlaneProblemInTime
 from nonsmooth.errors import SceneError
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
@@ -59,7 +59,7 @@ class TestSlab:
         grid = of_one_variable(line)
         coarse, fine = (plane.first_passage(grid, z, *levels, resolution=r) for r in (1, 2))
         assert abs(fine - exact) <= 2 * abs(fine - coarse) + 1e-9
-        assert abs(fine - exact) < plane.Plane.tol / 5
+        assert abs(fine - exact) < tuning.PLANE.default_tolerance / 5
 
     @pytest.mark.parametrize("name", SCENES)
     def test_is_passive_and_conserves(self, name):
@@ -133,12 +133,12 @@ class TestCrossing:
     def test_marching_agrees_with_the_transform(self, name, levels):
         """Of the marched curve, integrated to exp(-10); each on a coarse grid, good to 5e-4."""
         scene, z = SCENES[name][0], 0.5
-        marched = March(scene, *levels)
+        marched = PlaneProblemInTime(plane.PlaneProblem(scene, *levels))
         times = np.linspace(0.0, 20.0, 801)[1:]
-        found = marched.solve(times, *marched.levels[0])[0]
+        found = marched.solve(times, marched.settings.levels[0])[0]
         integral = z * simpson(np.append(0.0, np.exp(-z * times) * found), dx=times[0])
         integral += np.exp(-z * times[-1]) * found[-1]
-        transform = plane.Plane(scene, *levels).transform(0, times, None)
+        transform = plane.PlaneProblem(scene, *levels).transform(0, times, 0.0)
         assert integral == pytest.approx(transform(z), abs=1e-3)
 
     def test_a_scene_of_four_variables_is_told_to_sample(self):

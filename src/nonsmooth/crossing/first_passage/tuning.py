@@ -1,0 +1,239 @@
+"""Numbers that were chosen for first-passage problems, a record for each method."""
+
+from dataclasses import dataclass, replace
+
+from nonsmooth.crossing.first_passage.problem import ContourLevel, ContourSettings, Settings
+
+
+@dataclass(frozen=True)
+class Contours:
+    """Hyperbolic contours of the inverse Laplace transform."""
+
+    spare: int = 3  # chosen: times the nodes that a bounded transform needs
+    farthest: float = 7.0  # derived: parameter of the last node, exp(7)/2 saddles away from 0
+    of_width: float = 0.85  # derived: spacing, in standard deviations, that gives a normal
+    #                         integrand ten digits
+    of_saddle: float = 0.25  # chosen: spacing near the pole at 0, over the distance of the saddle
+    steep: tuple[float, float] = (0.45, 0.7)  # chosen: steep arms leave less room in which the
+    #                         transform does not grow: spacing times 0.45 + tilt / 0.7, at most 1
+    truncation_most: int = 100  # chosen: terms of a contour, after which it is given up
+
+
+@dataclass(frozen=True)
+class SaddlePoints:
+    """Search for the saddle point of exp(z t) F(z) / z on the axis, and for usable contours.
+
+    The arms of a contour point to the left of the vertical by some angle. On them exp(z t) falls
+    by |z| t sin(angle) in the exponent, while |F(z)| may grow. It is measured at some angles.
+    """
+
+    angles: tuple[float, ...] = (0.2, 0.4, 0.67)  # chosen: at which the growth of |F| is measured
+    steepest: float = 0.0  # chosen: angle of a contour where |F| grows too much at all of them
+    tamed: float = 0.3  # chosen: growth over fall, at most, on a contour through the saddle
+    tame: float = 0.08  # chosen: growth over fall, at most, on a hyperbola
+    harmless: float = 0.7  # chosen: growth that does not matter; poles near the axis cause it
+    negligibly: float = 30.0  # derived: where exp(z t) < exp(-30) growth does not matter
+    far: float = 6.0  # chosen: on a hyperbola growth is looked at for |z| t above it only, for
+    #                   the poles nearer to 0 are inside the contour
+    risen: float = 0.05  # chosen: bound of the probability from which on hyperbolas serve
+    spacing: float = 0.6  # chosen: of log z on the axis, for a spline of log F
+    fine: float = 0.01  # chosen: of log z on the spline
+    first: float = 0.1  # chosen: smallest z t looked at
+    largest: float = 150.0  # chosen: largest z t looked at
+    least_bend: float = 0.1  # chosen: second derivative in log z, at least, against rounding
+
+
+@dataclass(frozen=True)
+class Hyperbola:
+    """A kind of hyperbola.
+
+    Attributes
+    ----------
+    sector : float
+        Half angle about the negative axis of the poles, and of what grows there.
+    ratio : float
+        Last time over first time, at most.
+    more : int
+        Nodes more than those of a level.
+    since : float
+        Earliest time over that at which hyperbolas serve at all.
+    """
+
+    sector: float
+    ratio: float
+    more: int
+    since: float
+
+
+@dataclass(frozen=True)
+class Inversion:
+    """Windows of times, each of which is served by one contour."""
+
+    per_decade: float = 8.0  # chosen: nodes more for each decade of times
+    shortest: float = 3.0  # chosen: last over first time that a hyperbola is made for, at least
+    growth: float = 1e4  # chosen: growth of the probability in a window, at most, in the rise
+    # chosen: soon after the rise poles off the axis count, whose parts decay in three times that
+    early: Hyperbola = Hyperbola(sector=0.9, ratio=4.0, more=10, since=1.0)
+    steady: Hyperbola = Hyperbola(sector=0.3, ratio=20.0, more=3, since=3.0)
+    surely: float = 0.1  # derived: part of the least probability of which two levels and their
+    #                      difference stay below it
+    small: float = 1e-3  # chosen: survival probabilities below get contours of their own
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """The error, from the differences of levels."""
+
+    # fitted: rounding of a survival probability per relaxation time, by the formula of order 2,
+    # for slow crossings; without symmetry the slow mode is not split off, see `case_modes`
+    rounding: float = 1e-13
+    rounding_odd: float = 1e-14
+    safety: float = 3.0  # fitted: benchmarks/crossing_honesty.py, levels converge irregularly
+    safety_odd: float = 1.0  # fitted: the same
+    nearby: float = 2.0  # chosen: times within this factor share their errors
+    underflow: float = 1e-300  # derived: about the smallest normal number
+    exact: float = 1e-12  # chosen: errors below are not mended by the complementary probability
+    complement: float = 1e-15  # derived: rounding of 1 minus a probability
+
+
+@dataclass(frozen=True)
+class LineGrids:
+    """Grids of one state variable."""
+
+    coarse: int = 6  # chosen: polynomial degree for the choice of contours
+    spare: float = 18.0  # chosen: what is neglected is exp(-18) of the probability
+    depth: float = 26.0  # chosen: the grid ends where the density has fallen by exp(-26), too
+
+
+@dataclass(frozen=True)
+class FarStart:
+    """A start in the tails of one state variable."""
+
+    depth: float = 16.0  # chosen: beyond this depth of the start the modes lose digits
+    neglected: float = 1e-9  # derived: what `tail_descent` leaves out of the normal laws, and more
+
+
+@dataclass(frozen=True)
+class Slabs:
+    """Slabs of two state variables."""
+
+    fewest: int = 7  # chosen: doublings at resolution 0
+    thin: float = 0.1  # chosen: thinnest slab at resolution 0, over the way of a relaxation time
+    least: float = 1e-6  # chosen: mean duration over the time, below which it does not matter
+
+
+@dataclass(frozen=True)
+class StepLevel:
+    """A level of time stepping.
+
+    Attributes
+    ----------
+    resolution : int
+        Of the grid of the state.
+    degree : int
+        Polynomial degree in x.
+    finest : float
+        Smallest element in x, over the lesser of the distance to the threshold and of the way
+        that int g goes in a relaxation time.
+    step : float
+        Length of the steps, relative.
+    """
+
+    resolution: int
+    degree: int
+    finest: float
+    step: float
+
+
+@dataclass(frozen=True)
+class TimeStepping:
+    """Steps in time of two state variables."""
+
+    ratio: float = 2.0  # chosen: of neighbouring elements in x
+    longest: float = 0.1  # chosen: longest step, in relaxation times
+    first: float = 5e-3  # chosen: first step over the mean duration, ...
+    early: float = 4.0  # chosen: ... which is cut off at so many relaxation times
+    per_length: float = 100.0  # chosen: steps of one length before it is doubled
+    reached: float = 6.0  # chosen: end of the axis where there is no threshold, in spreads of ...
+    slow: float = 8.0  # chosen: ... int g if its correlation time is half of so many relaxations
+    gone: float = 1e-6  # chosen: survival that is taken as 0, below the error
+    short: float = 500.0  # chosen: relaxation times; slabs are faster for more
+    tail: float = 15.0  # chosen: mean durations after which nothing is left
+    most: int = 20_000  # chosen: steps, after which it is given up
+    unstable: float = 1e-3  # chosen: values so far outside of [0, 1] grow; less is an overshoot of
+    #                         the elements where a front passes
+
+
+CONTOURS = Contours()
+SADDLE_POINTS = SaddlePoints()
+INVERSION = Inversion()
+REFINEMENT = Refinement()
+LINE_GRIDS = LineGrids()
+FAR_START = FarStart()
+SLABS = Slabs()
+TIME_STEPPING = TimeStepping()
+
+LINE = ContourSettings(
+    default_tolerance=1e-7,
+    coarse_tolerance=1e-4,
+    # chosen: more nodes, of larger real part, would only make rounding errors grow
+    levels=(
+        ContourLevel(4, 7, 1.2),
+        ContourLevel(6, 10, 0.9),
+        ContourLevel(7, 11, 0.85),
+        ContourLevel(9, 13, 0.75),
+        ContourLevel(11, 15, 0.7),
+        ContourLevel(14, 17, 0.65),
+    ),
+    relative=True,
+    least_probability=1e-14,
+    # fitted: benchmarks/crossing_honesty.py; if g is odd, modes come in squares, of which fast ones
+    # lose half of their digits
+    unseen_error=2e-9,
+    advice="loosen tol",
+    least_transform=1e-70,
+    window=2.5,
+    rise_truncation=1e-12,
+    steady_truncation=1e-10,
+)
+LINE_FROM_AFAR = replace(
+    LINE,
+    relative=False,
+    # chosen: from a far start the probability rises fast up to 1
+    levels=tuple(level._replace(spacing=0.65 * level.spacing) for level in LINE.levels),
+    rise_truncation=1e-9,
+    advice="loosen tol, or use method='monte_carlo'",
+)
+PLANE = ContourSettings(
+    default_tolerance=1e-4,
+    coarse_tolerance=0.0,
+    levels=(
+        ContourLevel(0, 7, 1.2),
+        ContourLevel(1, 8, 1.05),
+        ContourLevel(2, 9, 0.95),
+        ContourLevel(3, 10, 0.9),
+    ),
+    relative=False,
+    least_probability=2e-5,
+    unseen_error=1e-5,  # derived: flow of the nodes that are taken to stand still
+    advice="loosen tol, or use method='monte_carlo'",
+    least_transform=1e-13,
+    window=4.0,
+    rise_truncation=1e-7,
+    steady_truncation=1e-6,
+)
+PLANE_IN_TIME = Settings(
+    default_tolerance=PLANE.default_tolerance,
+    coarse_tolerance=1e-3,
+    levels=(
+        StepLevel(1, 3, 2e-2, 1.4),
+        StepLevel(4, 4, 1e-2, 1.0),
+        StepLevel(5, 4, 5e-3, 0.7),
+        StepLevel(6, 4, 2.5e-3, 0.5),
+    ),
+    relative=False,
+    least_probability=PLANE.least_probability,
+    unseen_error=2e-5,  # chosen: as of `PLANE`, and what levels that refine one variable leave of
+    #                     the other
+    advice=PLANE.advice,
+)
