@@ -77,7 +77,7 @@ class PlaneProblem(LaplaceProblem):
         It is at least a small part of `time`.
         """
         z = 1 / time
-        mean = (1 - self.coarse_transform(z, 0.0)(z)) / z
+        mean = (1 - self.coarse_transform(z, 0.0)(z)).real / z
         return max(mean, tuning.SLABS.least * time)
 
     def _on_grid(self, resolution, time):
@@ -119,13 +119,15 @@ def first_passage(
     if lower == -upper:
         half = made(upper)
         even = np.linalg.solve(one - half.reflection, half.transmission @ ones)
-        return grid.start_row(z, EVEN) @ even
-    # values at the start where the flow enters the slab above, and that below
+        return (grid.start_row(z, EVEN) @ even).item()
     below, above = (made(abs(b)) if np.isfinite(b) else None for b in (lower, upper))
-    into = [s.transmission @ ones if s else 0 * ones for s in (below, above)]
-    below = below.reflection if below else half_space(above)
-    above = above.reflection if above else half_space(made(abs(lower)))
-    up = np.linalg.solve(one - above @ below, into[1] + above @ into[0])
-    down = into[0] + below @ up
+    from_below, from_above = (s.transmission @ ones if s else 0 * ones for s in (below, above))
+    reflects_below = below.reflection if below else half_space(above or made(upper))
+    reflects_above = above.reflection if above else half_space(below or made(-lower))
+    # values at the start where the flow enters the slab above, and that below
+    up = np.linalg.solve(
+        one - reflects_above @ reflects_below, from_above + reflects_above @ from_below
+    )
+    down = from_below + reflects_below @ up
     odd = np.sign(grid.speeds) * (up - down) / 2
-    return grid.start_row(z, EVEN) @ (up + down) / 2 + grid.start_row(z, ODD) @ odd
+    return (grid.start_row(z, EVEN) @ (up + down) / 2 + grid.start_row(z, ODD) @ odd).item()
