@@ -7,7 +7,7 @@ the exact flows of the simulation, the meshes of the solvers on grids and the ty
 derived from them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import sympy
@@ -52,11 +52,15 @@ class Penalty:
         )
 
     def potential_at(self, z: sympy.Symbol, stiffness: float) -> sympy.Expr:
-        """Return phi_n(z) for n = `stiffness`, which may be inf if the knot then is at 0."""
+        """Return phi_n(z) for n = `stiffness`, which may be inf if its limit is finite."""
         if stiffness < float("inf"):
             return self.potential(z).subs(n, sympy.Float(stiffness))
-        force, outer = (sympy.limit(f, n, sympy.oo) for f in (self.inner * self.knot, self.outer))
-        return force * sympy.Abs(z) + outer * z**2 / 2
+        knot, force, outer = (
+            sympy.limit(f, n, sympy.oo) for f in (self.knot, self.inner * self.knot, self.outer)
+        )
+        if knot == 0:
+            return force * sympy.Abs(z) + outer * z**2 / 2
+        return replace(self, knot=knot, inner=force / knot, outer=outer).potential(z)
 
     def at(self, stiffness: float) -> tuple[float, float, float]:
         """Return (knot, inner, outer) as floats for n = `stiffness`, which may be inf."""

@@ -50,6 +50,17 @@ def test_forces_balance_for_other_penalties(kind):
     assert abs(sampled.value - 1.0) <= 1.5 * sampled.error
 
 
+def test_a_penalty_without_n_is_its_own_limit():
+    """Friction that does not depend on n has the same gamma^2 at n = inf."""
+    model, _, forces = OTHERS["friction"]
+    for observable in (forces, "y"):
+        soft, limit = (
+            ns.asymptotic_variance(ns.Scene(model, n=k, observable=observable), tol=1e-9)
+            for k in (50, float("inf"))
+        )
+        assert limit.value == pytest.approx(soft.value, rel=1e-12)
+
+
 def test_what_is_asked_of_the_papers_models():
     """Where the penalty acts, and where the walls are at n = inf."""
     asked = {
