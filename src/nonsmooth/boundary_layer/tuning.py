@@ -21,6 +21,7 @@ class TwoVariables:
     depth: float = (
         16.0  # the box ends where the density is exp(-16) of its largest; chosen: 1e-7 is left
     )
+    zero: float = 1e-13  # |g| over its largest, up to which it is 0; derived: above rounding of g
     largest: int = 3000  # nodes with g != 0; chosen: a minute of dense linear algebra
     # correlation of g and its Poisson solution below which gamma^2 counts as 0; chosen: above the
     # discretisation error of a gamma^2 that is 0

@@ -120,7 +120,9 @@ def _milne(scene: Scene, grid) -> np.ndarray | None:
     """Return kappa and the Poisson solution at the start, or None if the grid is too large."""
     axes, solve = direct_solver(scene, grid)
     everywhere = solve.fold(evaluate(scene.numerical_observable(), axes))
-    kept = np.flatnonzero(np.abs(everywhere) > 1e-13 * np.max(np.abs(everywhere)))
+    kept = np.flatnonzero(
+        np.abs(everywhere) > tuning.TWO_VARIABLES.zero * np.max(np.abs(everywhere))
+    )
     if len(kept) > tuning.TWO_VARIABLES.largest:
         return None
     # masses of both mirror images together; upwind ones may be negative in the tails

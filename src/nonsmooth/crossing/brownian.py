@@ -232,4 +232,5 @@ def asymptotic_crossing(
         brownian_crossing(upper, max(gamma2 + shift, 0.0) * np.asarray(horizons), lower)
         for shift in (0.0, -gamma2_error, gamma2_error)
     )
-    return value, np.maximum(np.abs(above - value), np.abs(value - below)) + 4e-16
+    inherited = np.maximum(np.abs(above - value), np.abs(value - below))
+    return value, inherited + tuning.BROWNIAN_SERIES.rounding

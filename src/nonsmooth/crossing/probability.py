@@ -180,7 +180,10 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
     """Evaluate W_star(b / gamma, T), which does not depend on p."""
     mean, uncertainty = stationary_mean(scene, seed, threads)
     gamma2 = limit_variance(scene, seed, threads)
-    if abs(mean) > max(1e-8 * np.sqrt(gamma2.value), 5 * uncertainty):
+    centred = tuning.CENTRED
+    if abs(mean) > max(
+        centred.relative * np.sqrt(gamma2.value), centred.uncertainties * uncertainty
+    ):
         raise SceneError(
             f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
             f"{mean:.10g}; subtract it from g"

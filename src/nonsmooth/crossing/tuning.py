@@ -24,6 +24,14 @@ class MethodChoice:
 
 
 @dataclass(frozen=True)
+class Centred:
+    """The largest |E g| that counts as 0 for the asymptotic formula."""
+
+    relative: float = 1e-8  # over gamma; chosen: above rounding of E g
+    uncertainties: float = 5.0  # if E g is sampled; chosen: a false alarm in two million runs
+
+
+@dataclass(frozen=True)
 class BrownianSeries:
     """The two series of Brownian crossing, each used where none of its terms cancel."""
 
@@ -35,6 +43,7 @@ class BrownianSeries:
     reach: float = 100.0  # in sqrt(T); derived: exp(-5000), the chance to get there, is 0 in double
     exit_modes: range = range(1, 9)  # derived: the next is below exp(-300) for T > L^2
     exit_turns: int = 8  # derived: the next is below exp(-100) for T < L^2
+    rounding: float = 4e-16  # of the asymptotic formula; derived: two units in the last place of 1
 
 
 @dataclass(frozen=True)
@@ -96,6 +105,7 @@ class Counting:
 
 
 METHOD_CHOICE = MethodChoice()
+CENTRED = Centred()
 BROWNIAN_SERIES = BrownianSeries()
 RANDOM_CLOCK = RandomClock()
 ORDERS = Orders()
