@@ -159,8 +159,8 @@ def _combined(scene, tol):
         levels = {s: level for part, level in zip(directions, index, strict=True) for s in part}
         return replace(coarse, levels=levels)
 
-    def other_errors(value):
-        return 2 * abs(larger - base) + residual * abs(value)
+    def error(combination):
+        return combination.error + 2 * abs(larger - base) + residual * abs(combination.value)
 
     combination = Combination(
         tuple(coarse.levels[part[0]] for part in directions),
@@ -168,30 +168,25 @@ def _combined(scene, tol):
         lambda index: gamma2_on(scene, grid(index), accuracy),
         lambda index: points(scene, grid(index)),
     )
-    value, error = _enlarged(
-        combination, other_errors, tol, grid_tuning.TENSOR_GRIDS.largest[count]
-    )
+    _enlarge(combination, error, tol, grid_tuning.TENSOR_GRIDS.largest[count])
+    value, reached = combination.value, error(combination)
     best = grid(combination.dearest())
-    if error > tol * abs(value):
-        _refuse(scene, best, value, error, tol, accuracy)
-    return value, error, best, accuracy
+    if reached > tol * abs(value):
+        _refuse(scene, best, value, reached, tol, accuracy)
+    return value, reached, best, accuracy
 
 
-def _enlarged(combination, other_errors, tol, largest):
+def _enlarge(combination, error, tol, largest):
     """Add grids to a combination until its error is small enough, or nothing affordable is left."""
     left = tuning.GAMMA2_ON_GRIDS.work * largest
-    while True:
-        value = combination.value
-        error = combination.error + other_errors(value)
-        if error <= tol * abs(value):
-            return value, error
+    while not error(combination) <= tol * abs(combination.value):
         try:
             cost = combination.refine(min(largest, left))
         except ToleranceError:  # a finer grid on which the iteration does not converge
-            return value, error
+            return
         left -= cost
         if not cost:
-            return value, error
+            return
 
 
 def _refuse(scene, grid, value, error, tol, accuracy):
