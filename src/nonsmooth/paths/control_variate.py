@@ -1,9 +1,9 @@
 """The martingale of the Poisson solution as a control variate.
 
 With -A u = g - E g, int_0^t g - t E g = u(Z_0) - u(Z_t) + M(t), M(t) = int_0^t sigma u'(Y) dW.
-M and M^2 - <M> have the mean zero exactly, also for the time-stepping scheme, where each step adds
-a polynomial of its increment whose mean is zero given the past; they carry almost all of the
-variance of the integral and of its square.
+M and M^2 - <M> have the mean zero, and carry almost all of the variance of the integral and of its
+square. The mean is exactly zero for the time-stepping scheme, too: each step adds to M a polynomial
+of its increment whose mean is zero given the past.
 """
 
 from dataclasses import dataclass

@@ -61,7 +61,7 @@ def gram(
     def products(panel, count):
         delta, martingale, variation = panel.total[:, :count]
         vector = np.ones((5, count))
-        with np.errstate(over="ignore", invalid="ignore"):  # refused afterwards
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused below
             vector[1:] = delta, delta**2, martingale, martingale**2 - variation
             return vector @ vector.T
 

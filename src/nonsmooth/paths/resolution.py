@@ -86,7 +86,7 @@ def halved_step_bias(scene: Scene, times: ArrayLike, sampling: Sampling) -> dict
     if chosen.shares_noise:
         change, _ = coupled(scene, times, sampling)
         return {"mean": mean_bias(change, order), "variance": step_bias(change, order)}
-    # independent runs on a grid and on its halves
+    # Independent runs on a grid and on its halves.
     more = replace(sampling, paths=4 * sampling.paths)
     coarse, fine = (moments(gram(scene, times, more.labelled(k), parts=k)) for k in (1, 2))
     factor = 1 / (1 - 2**-order)
@@ -125,8 +125,8 @@ def choose_step(
 def require_resolved(step: float, variance: float, bias: float, error: float) -> None:
     """Refuse a step so long that halving it does not measure its bias.
 
-    The bias follows the weak order for steps that are short against every time scale of the
-    scene, on which g varies included; then it is small against the variance.
+    The bias follows the weak order only if the step is short against every time scale of the scene,
+    that of g included. It is then small against the variance.
 
     Parameters
     ----------

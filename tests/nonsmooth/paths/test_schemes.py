@@ -282,4 +282,4 @@ def test_scheme_of_the_manual(tmp_path, monkeypatch):
     )
     assert np.max(np.abs(found - expected)) < 1e-12
     with pytest.raises(SceneError, match="unstable with step"):
-        ensembles.paths_at(scene, [1.0], replace(sampling, step=0.3))
+        coefficients(scene, "explicit", 0.3)
