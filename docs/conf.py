@@ -25,6 +25,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+default_role = "literal"  # of names in docstrings
 exclude_patterns = ["_build", "gallery/**/README.rst", "sg_execution_times.rst"]
 # the same fence as on GitHub, and headings that other pages can name
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]

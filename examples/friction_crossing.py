@@ -15,7 +15,7 @@ import nonsmooth as ns
 scene = ns.Scene("friction", n=100)
 horizons = np.linspace(0.5, 10, 39)
 solved = ns.crossing_probability(scene, threshold=0.6, horizons=horizons, p=10)
-sampled = ns.crossing_probability(scene, 0.6, horizons, p=10, paths=5000, step=0.02, seed=1)
+sampled = ns.crossing_probability(scene, 0.6, horizons, p=10, paths=20_000, step=0.02, seed=1)
 limit = ns.crossing_probability(scene, 0.6, horizons, method="asymptotic")
 
 figure, axis = plt.subplots(figsize=(6, 3.6), layout="constrained")
