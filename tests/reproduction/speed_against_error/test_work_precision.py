@@ -116,7 +116,7 @@ class TestReferences:
 
     @pytest.mark.parametrize(("p", "published"), [(1, 0.1606775), (1000, 0.4902812)])
     def test_inversion_on_a_line(self, script, p, published):
-        """Against the seven digits of METHODS, section 2."""
+        """Against seven digits known before (docs/methods/crossing.md)."""
         value, error = script("crossing")["on_a_line"](ns.Scene("friction", n=100), 0.6, 2.0, p)
         assert error < 1e-7
         assert abs(value - published) < error + 1e-7
@@ -163,7 +163,7 @@ class TestScripts:
         }
         solved = [
             xr.Dataset({"gamma2": value, "gamma2_error": 1e-9})
-            for value in (0.137696412899501, 0.441883416)  # METHODS, sections 1 and 4
+            for value in (0.137696412899501, 0.441883416)  # see docs/methods/statistics.md
         ]
         data = script("gamma2")["gamma2"](
             solved, list(scenes), scenes, [8], [[1e-2]] * 3, [2, 4, 6], 0.05, [1_000], 2
