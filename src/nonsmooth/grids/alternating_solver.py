@@ -51,77 +51,93 @@ class AlternatingSolver:
     """
 
     def __init__(self, scene: Scene, axes: Mapping[Symbol, Axis], mirrored: bool, shift: float):
-        noise = {symbol: axes[symbol] for symbol in scene.noise.drift}
-        noise = {symbol: axes[symbol] for symbol in axes if symbol in noise}
-        forcing, *own = noise
+        chosen = tuning.ALTERNATING_DIRECTIONS
+        noise = {symbol: axes[symbol] for symbol in axes if symbol in scene.noise.drift}
         rest = {symbol: axes[symbol] for symbol in axes if symbol not in noise}
+        forcing, *own = noise
         self.mirrored = mirrored
-        self.forcing = len(axes[forcing].nodes)
-        self.own = int(np.prod([len(axes[symbol].nodes) for symbol in own]))
-        self.mechanics = int(np.prod([len(axis.nodes) for axis in rest.values()]))
-        self.kept = self.forcing // 2 if mirrored else self.forcing
-        self.shape = (self.kept, self.mechanics, self.own)
-
-        L = assemble(scene, noise).toarray()
-        half = L.shape[0] // 2
-        self.noise = (
-            {sign: L[:half, :half] + sign * L[:half, half:][:, ::-1] for sign in (ODD, EVEN)}
-            if mirrored
-            else {ODD: L, EVEN: L}
-        )
-        T = assemble(scene, {forcing: axes[forcing]} | rest, equations=rest)
-        size = self.mechanics
-        self.transport = [
-            T[i * size : (i + 1) * size, i * size : (i + 1) * size].tocsr()
-            for i in range(self.kept)
-        ]
-        self.shift = shift
-        self.most = tuning.ALTERNATING_DIRECTIONS.krylov * tuning.ALTERNATING_DIRECTIONS.restarts
-        self._resolvents = [factorise(shift * sp.eye_array(size) - t) for t in self.transport]
+        self.most = chosen.krylov * chosen.restarts
+        # numbers of nodes: of the forcing, of them those solved on, of the other variables of the
+        # noise, and of the oscillator
+        self._forcing = len(axes[forcing].nodes)
+        self._kept = self._forcing // 2 if mirrored else self._forcing
+        self._own = int(np.prod([len(axes[symbol].nodes) for symbol in own]))
+        self._oscillator = int(np.prod([len(axis.nodes) for axis in rest.values()]))
+        self._shape = (self._kept, self._oscillator, self._own)
+        self._noise = self._noise_matrices(scene, noise)
+        self._transport = self._transport_matrices(scene, {forcing: axes[forcing]}, rest)
+        self._shift = shift
+        identity = sp.eye_array(self._oscillator)
+        self._resolvents = [factorise(shift * identity - t) for t in self._transport]
         self._noise_factors = {
             sign: scipy.linalg.lu_factor(shift * np.eye(len(part)) - part)
-            for sign, part in self.noise.items()
+            for sign, part in self._noise.items()
         }
-        # solutions are made unique by their mean in this measure, which is near the origin
-        masses = scipy.linalg.null_space(self.noise[EVEN].T, rcond=1e-9)[:, 0]
-        masses = masses.reshape(self.kept, 1, self.own) / masses.sum()
-        near = _bump(rest)
-        self.measure = (masses * near[None, :, None]).ravel()
-        self.measure /= self.measure.sum()
+        self._measure = self._measure_near_origin(rest)
         # Residuals are weighted with a density, because they are to bound errors of means; without
         # weights, the corners of the box would count most. Between walls the density does not fall.
         flat = scene.mechanics.argument if scene.mechanics.argument == x else None
         self._scale = self.fold(np.sqrt(_normal(axes, flat)))
 
+    def _noise_matrices(self, scene, noise):
+        """Return the generator L of the noise, on functions that are odd and even in it."""
+        L = assemble(scene, noise).toarray()
+        if not self.mirrored:
+            return {ODD: L, EVEN: L}
+        half = L.shape[0] // 2
+        return {sign: L[:half, :half] + sign * L[:half, half:][:, ::-1] for sign in (ODD, EVEN)}
+
+    def _transport_matrices(self, scene, forcing, rest):
+        """Return the transport T by the oscillator's drift, for each value of the forcing."""
+        T = assemble(scene, forcing | rest, equations=rest)
+        size = self._oscillator
+        return [
+            T[i * size : (i + 1) * size, i * size : (i + 1) * size].tocsr()
+            for i in range(self._kept)
+        ]
+
+    def _measure_near_origin(self, rest):
+        """Return a measure of mass 1; solutions are made unique by their mean in it."""
+        masses = scipy.linalg.null_space(self._noise[EVEN].T, rcond=1e-9)[:, 0]
+        masses = masses.reshape(self._kept, 1, self._own) / masses.sum()
+        measure = (masses * _bump(rest)[None, :, None]).ravel()
+        return measure / measure.sum()
+
     def unfold(self, half: np.ndarray, parity: int) -> np.ndarray:
         """Continue a function from half of the grid to all of it."""
-        values = half.reshape(self.shape)
+        values = half.reshape(self._shape)
         if self.mirrored:
             values = np.concatenate([values, parity * values[::-1, ::-1, ::-1]])
         return values.transpose(0, 2, 1).ravel()
 
     def fold(self, whole: np.ndarray) -> np.ndarray:
         """Restrict a function to the half of the grid that is solved on."""
-        values = whole.reshape(self.forcing, self.own, self.mechanics)
-        return np.ascontiguousarray(values[: self.kept].transpose(0, 2, 1)).ravel()
+        values = whole.reshape(self._forcing, self._own, self._oscillator)
+        return np.ascontiguousarray(values[: self._kept].transpose(0, 2, 1)).ravel()
 
     def _by_noise(self, values, parity, apply):
-        """Apply an operator on the noise; it conserves the parity in the other variables."""
-        columns = values.transpose(0, 2, 1).reshape(-1, self.mechanics)
+        """Apply an operator on the noise to functions of all variables.
+
+        It conserves the parity in the oscillator's variables, and with it that in the noise's.
+        """
+        columns = values.transpose(0, 2, 1).reshape(-1, self._oscillator)
         if not self.mirrored:
             result = apply(parity, columns)
         else:
             even = (columns + columns[:, ::-1]) / 2
             result = apply(parity, even) + apply(-parity, columns - even)
-        return result.reshape(self.kept, self.own, self.mechanics).transpose(0, 2, 1)
+        return result.reshape(self._kept, self._own, self._oscillator).transpose(0, 2, 1)
 
     def generator(self, values: np.ndarray, parity: int, adjoint: bool = False) -> np.ndarray:
         """Apply A, or its transpose, to a folded function."""
-        values = values.reshape(self.shape)
+        values = values.reshape(self._shape)
         result = np.stack(
-            [(t.T if adjoint else t) @ part for t, part in zip(self.transport, values, strict=True)]
+            [
+                (t.T if adjoint else t) @ part
+                for t, part in zip(self._transport, values, strict=True)
+            ]
         )
-        noise = {sign: part.T for sign, part in self.noise.items()} if adjoint else self.noise
+        noise = {sign: part.T for sign, part in self._noise.items()} if adjoint else self._noise
         result += self._by_noise(values, parity, lambda sign, columns: noise[sign] @ columns)
         return result.ravel()
 
@@ -145,13 +161,13 @@ class AlternatingSolver:
                 ]
             )
 
-        values = values.reshape(self.shape)
+        values = values.reshape(self._shape)
         values = noise(transport(values)) if adjoint else transport(noise(values))
-        return 2 * self.shift * values.ravel()
+        return 2 * self._shift * values.ravel()
 
     def _gmres(self, right, parity, accuracy, adjoint=False):
         """Solve (-A + 1 measure') u = f: the measure's integral of u is then the mean of f."""
-        ones, measure, scale = np.ones(right.size), self.measure, self._scale
+        ones, measure, scale = np.ones(right.size), self._measure, self._scale
         if adjoint:
             ones, measure, scale = measure, ones, ones
         odd = self.mirrored and parity == ODD
@@ -215,11 +231,11 @@ class AlternatingSolver:
         solution = self._gmres(values, parity, accuracy)
         if self.mirrored and parity == ODD:
             return solution, 0.0
-        return solution, float(self.measure @ solution)
+        return solution, float(self._measure @ solution)
 
     def stationary(self, accuracy: float) -> np.ndarray:
         """Masses of the invariant measure at the nodes of the whole grid, of sum 1."""
-        masses = self.unfold(self._gmres(self.measure, EVEN, accuracy, adjoint=True), EVEN)
+        masses = self.unfold(self._gmres(self._measure, EVEN, accuracy, adjoint=True), EVEN)
         return masses / masses.sum()
 
 
