@@ -53,6 +53,7 @@ def layer_constants(
     """
     tol = tuning.TWO_VARIABLES.accuracy if tol is None else tol
     grid, best = fitted(scene, tuning.TWO_VARIABLES.depth, 0), math.nan
+    # if the variables change too much together, once more from a finer grid; `_solved` ends it
     while True:
         values, errors = _refined_from(scene, grid, tol, best)
         if errors.max() <= tol:
