@@ -17,8 +17,8 @@ def far(start, **parameters):
     return ns.Scene("friction", start={"y": start}, **parameters)
 
 
-def spectral(scene, threshold, horizons, tol=1e-7):
-    """Spectral values."""
+def deterministic(scene, threshold, horizons, tol=1e-7):
+    """Values of the deterministic method."""
     return ns.crossing_probability(scene, threshold, horizons, method="deterministic", tol=tol)
 
 
@@ -85,20 +85,20 @@ def test_points_of_a_law():
 def test_crossings_in_flight():
     """A start of depth 2600: a step, as wide as the normal law says; mirrored, the same."""
     horizons = [0.011, 0.012, 0.0121, 0.1, 100.0]
-    found = spectral(far(50.0), 0.6, horizons)
+    found = deterministic(far(50.0), 0.6, horizons)
     # int y = 50 t - 51 t^2 / 2 + int W, but for t^3
     t = np.array(horizons[:3])
     rough = ndtr((50 * t - 25.5 * t**2 + 8.5 * t**3 - 0.6) / (t**1.5 / np.sqrt(3)))
     assert np.allclose(found.probability[:3], rough, rtol=0.05, atol=1e-7)
     assert np.all(found.probability[3:] == 1)
     assert np.all(found.probability_error <= 1e-7)
-    mirrored = spectral(far(-50.0), 0.6, horizons)
+    mirrored = deterministic(far(-50.0), 0.6, horizons)
     assert np.allclose(mirrored.probability, found.probability, rtol=0, atol=1e-14)
 
 
 def test_monte_carlo_from_afar():
     """The wall is next to where the flight ends; 4.5 standard errors: false alarm 7e-6."""
-    found = spectral(far(5.0), 2.0, [0.5], tol=1e-5)
+    found = deterministic(far(5.0), 2.0, [0.5], tol=1e-5)
     sample = ns.crossing_probability(far(5.0), 2.0, [0.5], paths=40_000, step=0.005, seed=3)
     bias = np.abs(sample.step_bias) + sample.step_bias_error
     gap = np.abs(sample.probability - found.probability)
@@ -109,7 +109,7 @@ def test_monte_carlo_from_afar():
 def test_refused_where_g_changes_its_sign():
     """With the cure."""
     with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
-        spectral(far(8.0, observable="y*(y**2 - 49)"), 0.6, [1.0])
+        deterministic(far(8.0, observable="y*(y**2 - 49)"), 0.6, [1.0])
 
 
 def test_the_longest_way():

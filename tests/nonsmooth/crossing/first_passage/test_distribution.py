@@ -1,14 +1,12 @@
-"""First passage of one variable by Case modes."""
+"""First passage of one variable by Case's elementary solutions and inverted transforms."""
 
 import numpy as np
 import pytest
 from scipy.integrate import simpson
 from scipy.interpolate import CubicSpline
-from scipy.special import erfc
 
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import contours
-from nonsmooth.crossing.first_passage.contours import hyperbola
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.kinetic.case_modes import first_passage
 from nonsmooth.kinetic.ordinates_line import ordinates
@@ -17,18 +15,6 @@ FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
 # g without symmetry, centred; 4e-16 is the error of the mean
 SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
 DIGITS = 1e-7  # a unit in the last of seven
-
-
-class TestContour:
-    """The trapezoidal rule on hyperbolas converges geometrically."""
-
-    @pytest.mark.parametrize(("ratio", "count", "rate"), [(1.01, 10, 2.0), (10.0, 24, 0.9)])
-    def test_inverts_to_the_declared_rate(self, ratio, count, rate):
-        """exp(-sqrt z)/z is the transform of erfc(1/(2 sqrt t)); error exp(-rate count)."""
-        contour = hyperbola(1.0, ratio, count).until(count)
-        times = np.linspace(1.0, ratio, 7)
-        value = contour.invert(np.exp(-np.sqrt(contour.nodes)) / contour.nodes, times)
-        assert np.max(np.abs(value - erfc(0.5 / np.sqrt(times)))) < np.exp(-rate * count)
 
 
 def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
