@@ -8,6 +8,7 @@ HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parent / "src")]
 
 import pictures  # noqa: E402
+import sphinx.ext.autosummary as autosummary  # noqa: E402
 from sphinx_gallery.sorting import ExplicitOrder  # noqa: E402
 
 project = "nonsmooth"
@@ -52,6 +53,8 @@ html_copy_source = False
 html_show_sourcelink = False
 
 autosummary_generate = True
+# no ends of sentences
+autosummary.WELL_KNOWN_ABBREVIATIONS = (*autosummary.WELL_KNOWN_ABBREVIATIONS, "eq.", "eqs.")
 autodoc_default_options = {"members": False}
 autodoc_typehints = "none"  # the Parameters sections have the types
 numpydoc_show_class_members = False
