@@ -8,8 +8,9 @@ h(x, Z) = E exp(-z tau), Z the state, solves
 
 This is the equation of one-dimensional radiative transfer: x is the depth in a slab, g the
 direction cosine, A the scattering. The methods here are those of that field. The state is
-discretised by nodes (discrete ordinates), and x is treated exactly by Case's elementary solutions
-or by adding and doubling of slabs. The manual page is `docs/methods/kinetic.md`.
+discretised by nodes (discrete ordinates). In x the solution is exact with Case's elementary
+solutions, and of high order with adding and doubling of slabs. The manual page is
+`docs/methods/kinetic.md`.
 
 - `ordinates_line.ordinates`: nodes of one state variable, in the space L^2(m).
 - `ordinates_plane.plane_ordinates`, `ordinates_gibbs.gibbs_ordinates`: nodes of two, in general

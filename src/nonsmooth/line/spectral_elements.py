@@ -42,7 +42,7 @@ def mesh(scene: Scene) -> np.ndarray:
         )
     end = max(end, settings.past_start * start)
     knot = min(knot, end)  # one beyond the end does not matter
-    widest = end / settings.most_elements
+    widest = end / settings.fewest
     finest = min(max(settings.finest, knot / settings.per_knot), widest)
     outer = growing(knot, end, finest, widest)
     inner = -growing(-knot, 0.0, finest, widest, spare=1.5)

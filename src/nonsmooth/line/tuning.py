@@ -18,10 +18,10 @@ class SpectralElements:
     """Mesh of the Galerkin method in L^2(m)."""
 
     depth: float = 80.0  # chosen: the mesh ends where m has fallen by exp(-80) = 2e-35
-    finest: float = 2.0**-7  # chosen: narrowest element, next to a kink; 1/n beyond n = 128
-    most_elements: float = 8.0  # chosen: an element is at most this fraction of the half width
-    per_knot: float = 4.0  # chosen: elements between 0 and the kink at 1/n, at least
-    step: float = 1.25  # chosen: factor by which the end of the mesh is sought; only its cost
+    finest: float = 2.0**-7  # chosen: width of the elements next to a kink, ...
+    per_knot: float = 4.0  # chosen: ... or the distance of the kink from 0 over it, if larger
+    fewest: float = 8.0  # chosen: elements on half of the axis, at least
+    step: float = 1.25  # chosen: the end of the mesh is found up to this factor
     past_start: float = 1.5  # chosen: the mesh ends at so many times the start, or farther
     degree_of_mean: int = 12  # chosen: converged for every n, tests/.../test_eigenfunctions.py
     extra_points: int = 16  # chosen: Gauss points beyond the degree, for exp(-Phi) in an element
@@ -39,7 +39,7 @@ class Quadrature:
     #                        has Legendre coefficients below 1e-17 from degree 18 on
     resolved: float = 1e-13  # chosen: effect on gamma^2 at which an element is left: 500 eps
     noise: float = 100.0  # chosen: last Legendre coefficients below so many eps may be rounding
-    rounds: int = 120  # chosen: halvings after which a formula is given up; 2^-120 is below eps
+    rounds: int = 120  # chosen: halvings after which a formula is given up, as at a pole
     most_elements: int = 3000  # chosen: a formula that needs more has a pole
     sampled: int = 60  # chosen: elements on which g is also evaluated to many digits
     digits: int = 40  # chosen: decimal digits of these evaluations, more than cancellation takes
