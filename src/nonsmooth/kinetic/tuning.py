@@ -11,11 +11,14 @@ class LineOrdinates:
     depth: float = 40.0  # derived: the grid ends where m has fallen by exp(-40), below rounding
     steepest: float = 12.0  # chosen: log of the ratio of the densities at the ends of an element
     grading: float = 3.0  # chosen: widest element over its distance to a zero of g or the start
+    # both relative to the lesser of the standard deviation of y and of sigma sqrt(t)
     finest: float = 0.1  # chosen: width at a zero of g; the error is of the order of its cube
     at_start: float = 1.0  # chosen: width at the start, where the solution is smooth
-    crossing: float = 3.0  # chosen: widest element over the spread of velocities near a wall
-    digits: float = 26.0  # derived: depths over which all digits count, exp(-26) = 5e-12
-    rarest: float = 0.1  # chosen: the element is at most 1/rarest wider, where paths are rare
+    crossing: float = 3.0  # chosen: widest element over the spread of velocities of the paths
+    #                        that go straight to a wall
+    digits: float = 26.0  # derived: nearer than this depth to the end of the grid fewer digits
+    #                       count, for exp(-26) = 5e-12; elements are wider there, ...
+    rarest: float = 0.1  # chosen: ... but at most 1/rarest times
     reach: float = 12.0  # derived: sigma sqrt(t) times it is exceeded with probability exp(-72)
     long_time: float = 1e3  # chosen: in units of 1/C_b; beyond, the grid does not depend on it
     shrink: float = 0.98  # chosen: factor by which the end of the grid is sought

@@ -10,7 +10,7 @@ until two agree. The manual page is `docs/methods/first_passage.md`; to add a pr
   `distribution.refined`: the same for any problem.
 - `problem.LaplaceProblem`, `problem.DirectProblem`, `problem.Settings`: the contract of a problem.
 - `line.LineProblem`, `plane.PlaneProblem`, `time_stepping.PlaneProblemInTime`: the problems.
-- `inversion.by_contours`: the inverse Laplace transform for many times.
+- `inversion.contour_solver`: the inverse Laplace transform for many times.
 - `saddle_points.saddle_points`, `contours.hyperbola`, `contours.through_saddle`,
   `contours.inverted`: its parts.
 """

@@ -7,7 +7,7 @@ for two. It is solved on finer and finer levels until two of them agree.
 import numpy as np
 
 from nonsmooth.crossing.first_passage import plane, time_stepping, tuning
-from nonsmooth.crossing.first_passage.inversion import Solver, by_contours
+from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver
 from nonsmooth.crossing.first_passage.line import LineProblem, LineProblemFromAfar
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.crossing.first_passage.problem import (
@@ -166,9 +166,9 @@ def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict
 
 
 def _solver(problem: FirstPassageProblem, times: np.ndarray) -> Solver:
-    """How a problem of either kind is solved on a level; see `inversion.by_contours`."""
+    """How a problem of either kind is solved on a level; see `inversion.contour_solver`."""
     if isinstance(problem, LaplaceProblem):
-        return by_contours(problem, times)
+        return contour_solver(problem, times)
     assert isinstance(problem, DirectProblem)
     everywhere = np.full(len(times), True)
     return lambda level, known, wanted: (problem.solve(times, level), everywhere)

@@ -23,7 +23,7 @@ from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_
 Solver = Callable[[ContourLevel, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def by_contours(problem: LaplaceProblem, times: np.ndarray) -> Solver:
+def contour_solver(problem: LaplaceProblem, times: np.ndarray) -> Solver:
     """Prepare the inversion for given times.
 
     Parameters
@@ -57,7 +57,7 @@ class _Inversion:
     saddles : SaddlePoints
     level : ContourLevel
     known, wanted
-        As of `by_contours`.
+        As of `contour_solver`.
     """
 
     def __init__(
