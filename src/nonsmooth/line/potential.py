@@ -1,6 +1,7 @@
 """The invariant density of a scene with one state variable, m = exp(-Phi) / Z."""
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import sympy
 
@@ -10,6 +11,7 @@ from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 
 
+@lru_cache(maxsize=64)
 def potential(scene: Scene) -> tuple[sympy.Expr, float]:
     """Return Phi, minus the logarithm of the invariant density up to a constant, and its kink.
 
