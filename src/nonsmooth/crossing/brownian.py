@@ -118,8 +118,13 @@ def _modes(b, T, width, weight):
 def brownian_survival(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
     """Probability that W stays below b and above the lower level up to T, 1 - W_star.
 
-    Parameters and errors are those of `brownian_crossing`, and so is the relative accuracy,
-    however small the value.
+    The relative accuracy is that of `brownian_crossing`, however small the value, and so are the
+    errors raised.
+
+    Parameters
+    ----------
+    b, T, lower : array_like
+        As for `brownian_crossing`.
 
     Returns
     -------
@@ -135,8 +140,13 @@ def brownian_first_passage_density(
 ) -> np.ndarray:
     """Density in T of the time when W first reaches b or the lower level, d W_star / d T.
 
-    Parameters and errors are those of `brownian_crossing`, and so is the relative accuracy,
-    however small the value.
+    The relative accuracy is that of `brownian_crossing`, however small the value, and so are the
+    errors raised.
+
+    Parameters
+    ----------
+    b, T, lower : array_like
+        As for `brownian_crossing`.
 
     Returns
     -------
