@@ -1,16 +1,15 @@
 """A bad configuration costs one line that names the key and the cure."""
 
 import copy
-from pathlib import Path
 
 import pytest
 import yaml
+from support import ROOT
 
 from nonsmooth.errors import NonsmoothError
 from reproduction.configuration import validate
 from workflow.experiment import SCHEMA, check, label, shards
 
-ROOT = Path(__file__).parents[2]
 CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())
 SMOKE = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text())
 

@@ -4,7 +4,7 @@ import re
 
 import pytest
 import yaml
-from conftest import ROOT
+from support import ROOT
 
 from nonsmooth.line.dry_friction import friction_variance
 from reproduction.errata.entries import ERRATA

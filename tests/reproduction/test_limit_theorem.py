@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from references import FALSE_ALARM, FRICTION, GAMMA2, KAPPA
 from scipy import stats
 
-import nonsmooth as ns
 from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.paths.sampling import Sampling
 from reproduction.limit_theorem import (
@@ -17,10 +17,6 @@ from reproduction.limit_theorem import (
     sampling_bound,
     scaled_integrals,
 )
-
-SCENE = ns.Scene("friction", n=100)
-GAMMA2 = 0.137696412899501
-FALSE_ALARM = 1e-5
 
 
 def test_distance_of_points_by_hand():
@@ -91,10 +87,10 @@ def test_two_terms_are_allowed_and_no_more(second):
 def test_scaled_integrals_are_those_of_the_crossings():
     """As many maxima above sqrt(p) b as first passages counted; |Xi_p(1)| is at most the max."""
     p, b, step, paths = (2.0, 8.0), 0.6, 0.05, 1500
-    final, maximum = scaled_integrals(SCENE, p, Sampling(step, paths, 5))
+    final, maximum = scaled_integrals(FRICTION, p, Sampling(step, paths, 5))
     assert final.shape == maximum.shape == (2, paths)
     assert np.all(np.abs(final) <= maximum * (1 + 1e-6))
-    counts = first_passage_counts(SCENE, b, [1.0], 2.0, Sampling(step, paths, 5))
+    counts = first_passage_counts(FRICTION, b, [1.0], 2.0, Sampling(step, paths, 5))
     assert np.sum(maximum[0] >= b) == counts[0]
     assert np.all(maximum[1] * np.sqrt(8) >= maximum[0] * np.sqrt(2))
 
@@ -103,12 +99,12 @@ def test_theorem_on_dry_friction():
     """Normal up to O(1/p), the maximum as far off as is known, and a wrong gamma is seen."""
     paths = 20_000
     sampling = Sampling(0.05, paths, 2)
-    final, maximum = scaled_integrals(SCENE, [100.0], sampling)[:, 0] / np.sqrt(GAMMA2)
+    final, maximum = scaled_integrals(FRICTION, [100.0], sampling)[:, 0] / np.sqrt(GAMMA2)
     bound = sampling_bound(paths, FALSE_ALARM)
     # v(100)/100 = 0.1368 for 0.1377: the spread is 0.3 % too small, the distance phi(1) times it
     assert kolmogorov_distance(final, normal_law) < bound + 0.0033 * stats.norm.pdf(1) + 2e-3
-    # the threshold is effectively higher by kappa/sqrt(p), kappa = 0.2911259630
-    shift = 0.2911259630 / np.sqrt(100 * GAMMA2)
+    # the threshold is effectively higher by kappa/sqrt(p)
+    shift = KAPPA / np.sqrt(100 * GAMMA2)
     grid = np.linspace(0.01, 6, 4001)
     expected = np.max(maximum_law(grid + shift) - maximum_law(grid))
     assert abs(kolmogorov_distance(maximum, maximum_law) - expected) < bound + 5e-3

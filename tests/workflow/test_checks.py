@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import ROOT
 from scipy.special import ndtr, ndtri
+from support import ROOT
 
 from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.counting import crossing_estimate

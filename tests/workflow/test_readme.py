@@ -5,7 +5,7 @@ from contextlib import redirect_stdout
 from fnmatch import fnmatch
 from io import StringIO
 
-from conftest import ROOT
+from support import ROOT
 
 from reproduction import artifact
 

@@ -9,6 +9,7 @@ import sys
 import pandas as pd
 import pytest
 import typst
+from support import ROOT
 
 import nonsmooth as ns
 from reproduction import artifact
@@ -61,7 +62,7 @@ def test_every_artifact_has_a_log_and_a_benchmark(smoke_run):
 
 def test_no_number_of_the_paper_is_typed():
     """The template holds no decimal number outside of lengths, sizes and section markup."""
-    template = (pytest.importorskip("conftest").ROOT / "paper" / "paper.typ").read_text()
+    template = (ROOT / "paper" / "paper.typ").read_text()
     body = template[template.index("#align(center)") :]
     stripped = re.sub(r"\d+(\.\d+)?(pt|cm|em|%)", "", body)
     assert not re.search(r"\d+\.\d+", stripped)
@@ -177,8 +178,7 @@ def test_progress_is_visible(repository):
 
 def test_lint():
     """`snakemake --lint` has nothing to say."""
-    root = pytest.importorskip("conftest").ROOT
     run = subprocess.run(
-        [sys.executable, "-m", "snakemake", "--lint"], cwd=root, capture_output=True, text=True
+        [sys.executable, "-m", "snakemake", "--lint"], cwd=ROOT, capture_output=True, text=True
     )
     assert run.returncode == 0, run.stdout + run.stderr

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from references import KAPPA, MIRRORED, SKEWED, SKEWED_AND_STARTED
 
 import nonsmooth as ns
 from nonsmooth.boundary_layer import symmetric_line
@@ -9,14 +10,11 @@ from nonsmooth.boundary_layer.asymmetric_line import layer_constants
 from nonsmooth.line.eigenfunctions import spectrum
 from nonsmooth.line.quadrature import mean as stationary_mean
 
-# centred; 4e-16 is the error of the mean
-SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079", start={"y": 0.2})
-
 
 @pytest.fixture(scope="module")
 def skewed():
     """Constants of a g without symmetry, and their errors."""
-    return layer_constants(SKEWED)
+    return layer_constants(SKEWED_AND_STARTED)
 
 
 def test_difference_of_the_extrapolation_lengths(skewed):
@@ -30,7 +28,7 @@ def test_difference_of_the_extrapolation_lengths(skewed):
 def test_cumulants(skewed):
     """D, C and B are the first derivatives of the largest eigenvalue of A + q g at q = 0."""
     found, _ = skewed
-    s = spectrum(SKEWED, 10)
+    s = spectrum(SKEWED_AND_STARTED, 10)
 
     def largest(q):
         return np.linalg.eigvalsh(q * s.product - np.diag(s.rates))[-1]
@@ -58,14 +56,12 @@ def test_limit_of_odd_g():
 
 def test_mirrored_scene():
     """Its extrapolation lengths are swapped, within the errors; D is that of the quadrature."""
-    scene = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
-    mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
     for side, other in (("lower", "upper"), ("upper", "lower")):
-        kappa = ns.extrapolation_length(scene, side=side)
-        swapped = ns.extrapolation_length(mirrored, side=other)
+        kappa = ns.extrapolation_length(SKEWED, side=side)
+        swapped = ns.extrapolation_length(MIRRORED, side=other)
         assert abs(kappa.value - swapped.value) <= kappa.error + swapped.error + 1e-12
-    found, errors = layer_constants(scene)
-    gamma2 = ns.asymptotic_variance(scene).value
+    found, errors = layer_constants(SKEWED)
+    gamma2 = ns.asymptotic_variance(SKEWED).value
     assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
 
 
@@ -74,7 +70,7 @@ def test_odd_g_on_the_whole_grid(monkeypatch):
     monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
     for side in ("lower", "upper"):
         found = ns.extrapolation_length(ns.Scene("friction"), side=side)
-        assert abs(found.value - 0.2911259630) < 2e-9
+        assert abs(found.value - KAPPA) < 2e-9
 
 
 def test_needs_a_centred_g():

@@ -1,5 +1,7 @@
 """kappa and the Poisson solution by Monte Carlo."""
 
+from references import FRICTION, KAPPA
+
 import nonsmooth as ns
 from nonsmooth.boundary_layer.sampled import sampled_kappa, sampled_poisson
 from nonsmooth.boundary_layer.symmetric_line import layer_constants
@@ -7,8 +9,8 @@ from nonsmooth.boundary_layer.symmetric_line import layer_constants
 
 def test_kappa_of_dry_friction():
     """Within the stated error, two standard errors and more; the seed is fixed."""
-    found = sampled_kappa(ns.Scene("friction"), seed=1)
-    assert abs(found.value - 0.2911259630) < found.error
+    found = sampled_kappa(FRICTION, seed=1)
+    assert abs(found.value - KAPPA) < found.error
     assert found.error < 0.2 * found.value
 
 

@@ -3,11 +3,10 @@
 import mpmath
 import numpy as np
 import pytest
+from references import FRICTION, GAMMA2, KAPPA
 
 import nonsmooth as ns
 from nonsmooth.boundary_layer.symmetric_line import layer_constants
-
-FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
 
 
 def test_kappa_of_ornstein_uhlenbeck():
@@ -42,8 +41,8 @@ def test_independent_prototype():
     """
     found, errors = layer_constants(FRICTION)
     for name, value in (
-        ("diffusion", 0.06884820644975),
-        ("kappa", 0.2911259630),
+        ("diffusion", GAMMA2 / 2),
+        ("kappa", KAPPA),
         ("dispersion", 0.00369027612),
         ("dipole", -0.0360711815),
         ("h", -0.0188637460),

@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+from references import GAMMA2, W_STAR
 
 import nonsmooth as ns
 from nonsmooth.crossing.brownian import asymptotic_crossing, brownian_exit
@@ -139,8 +140,8 @@ def test_levels_on_the_wrong_side_are_refused(arguments, cure):
 
 def test_known_value():
     """The limit of figure 2b at T = 2."""
-    gamma = np.sqrt(0.137696412899501)
-    assert float(ns.brownian_crossing(0.6 / gamma, 2.0)) == pytest.approx(0.5045888, abs=5e-8)
+    gamma = np.sqrt(GAMMA2)
+    assert float(ns.brownian_crossing(0.6 / gamma, 2.0)) == pytest.approx(W_STAR, abs=5e-8)
 
 
 @pytest.mark.parametrize("threshold", [0.6, (-0.9, 0.6), (-np.inf, 0.6), (-0.9, np.inf)])

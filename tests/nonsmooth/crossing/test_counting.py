@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from references import FALSE_ALARM, FRICTION, GAMMA2, KAPPA
 from scipy import special, stats
 
 import nonsmooth as ns
@@ -13,14 +14,12 @@ from nonsmooth.paths.moments import step_bias
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.thresholds import bounds
 
-SCENE = ns.Scene("friction", n=100)
 HORIZONS = np.linspace(0, 2, 11)[1:]
-FALSE_ALARM = 1e-5
 
 
 def test_number_of_threads_and_shards_changes_no_count():
     """One run of two blocks is the sum of two runs of one block."""
-    arguments = (SCENE, 0.6, HORIZONS, 1.0)
+    arguments = (FRICTION, 0.6, HORIZONS, 1.0)
     whole = first_passage_counts(*arguments, Sampling(0.05, 2 * BLOCK, 5, threads=2))
     parts = [
         first_passage_counts(*arguments, Sampling(0.05, BLOCK, 5, first, threads=1))
@@ -31,13 +30,13 @@ def test_number_of_threads_and_shards_changes_no_count():
 
 def test_thresholds_out_of_reach_and_within_every_reach():
     """No path integrates to 50 in two units of time; every path to a tiny threshold."""
-    none = first_passage_counts(SCENE, 50.0, HORIZONS, 1.0, Sampling(0.05, 500, 1))
-    every = first_passage_counts(SCENE, 1e-9, HORIZONS, 1.0, Sampling(0.05, 500, 1))
+    none = first_passage_counts(FRICTION, 50.0, HORIZONS, 1.0, Sampling(0.05, 500, 1))
+    every = first_passage_counts(FRICTION, 1e-9, HORIZONS, 1.0, Sampling(0.05, 500, 1))
     assert none.sum() == 0
     assert every.sum() == every[0] == 500
 
 
-def crossed(threshold, scene=SCENE, p=10.0, paths=5_000):
+def crossed(threshold, scene=FRICTION, p=10.0, paths=5_000):
     """Numbers of paths that have crossed by the horizons, of the same paths for all thresholds."""
     return np.cumsum(first_passage_counts(scene, threshold, HORIZONS, p, Sampling(0.05, paths, 8)))
 
@@ -55,7 +54,7 @@ def test_levels_of_both_sides():
 
 
 @pytest.mark.parametrize("threshold", [0.3, (-0.5, 0.2), (-np.inf, 0.2), (-0.2, np.inf)])
-@pytest.mark.parametrize("scene", [SCENE, ns.Scene("elasto_plastic", "langevin")])
+@pytest.mark.parametrize("scene", [FRICTION, ns.Scene("elasto_plastic", "langevin")])
 def test_counts_are_those_of_stored_paths(threshold, scene):
     """Bit for bit: the extremes of int g over all steps against the levels."""
     # one step from time to time; up to the first, of 16 steps, int g is far from all levels
@@ -72,11 +71,11 @@ def test_counts_are_those_of_stored_paths(threshold, scene):
 
 def test_one_level_by_the_reflection_principle():
     """P(max >= b) = erfc(b / (gamma sqrt(2 T))) with b + kappa/sqrt(p) for b, error O(1/p)."""
-    p, paths, gamma = 100.0, 40_000, np.sqrt(0.137696412899501)
+    p, paths, gamma = 100.0, 40_000, np.sqrt(GAMMA2)
     sampling = Sampling(0.02, paths, 9)
-    counts = first_passage_counts(SCENE, (-np.inf, 0.6), HORIZONS, p, sampling)
+    counts = first_passage_counts(FRICTION, (-np.inf, 0.6), HORIZONS, p, sampling)
     estimate, _, _ = proportion(counts.sum(), paths)
-    expected = special.erfc((0.6 + 0.2911259630 / np.sqrt(p)) / gamma / np.sqrt(2 * HORIZONS[-1]))
+    expected = special.erfc((0.6 + KAPPA / np.sqrt(p)) / gamma / np.sqrt(2 * HORIZONS[-1]))
     error = np.sqrt(expected * (1 - expected) / paths)
     # 1e-3 is the error with two levels; of the step as above
     assert abs(estimate - expected) < stats.norm.isf(FALSE_ALARM / 2) * error + 1e-3 + 6e-4
@@ -86,7 +85,7 @@ def test_one_level_by_the_reflection_principle():
 def test_passage_times_of_two_levels(levels):
     """The earlier of those of each level, bit for bit, for both steps."""
     passages = [
-        coupled(SCENE, [2.0, 10.0], Sampling(0.1, 1_500, 10), pair)[1]
+        coupled(FRICTION, [2.0, 10.0], Sampling(0.1, 1_500, 10), pair)[1]
         for pair in (levels, (levels[0], np.inf), (-np.inf, levels[1]))
     ]
     assert np.array_equal(passages[0], np.minimum(*passages[1:]))
@@ -114,14 +113,14 @@ def test_interval_at_the_ends():
 
 def test_halving_shifts_the_passage_times_by_the_bias_of_the_variance():
     """Mean log time shifts by minus the relative bias of gamma^2 (h = 0.2: -0.023)."""
-    count, total, square = first_passage_shift(SCENE, 0.6, 20.0, 10.0, Sampling(0.2, 20_000, 6))
+    count, total, square = first_passage_shift(FRICTION, 0.6, 20.0, 10.0, Sampling(0.2, 20_000, 6))
     mean = total / count
     error = np.sqrt((square / count - mean**2) / count)
     assert count > 19_900
     # the variance's halving at the same step, from independent samples
-    change, _ = coupled(SCENE, [20.0], Sampling(0.2, 50_000, 7))
+    change, _ = coupled(FRICTION, [20.0], Sampling(0.2, 50_000, 7))
     bias, spread = step_bias(change, np.inf)
-    v = float(ns.variance(SCENE, [20.0])["v"][0])
+    v = float(ns.variance(FRICTION, [20.0])["v"][0])
     relative, relative_error = bias[0] / v, spread[0] / v
     # finite p: passage times are those of a Brownian motion up to p^-1/2 = 0.32
     allowed = stats.norm.isf(FALSE_ALARM / 2) * np.hypot(error, relative_error)

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from references import SKEWED_AND_STARTED
 from scipy import stats
 from scipy.integrate import quad
 
-import nonsmooth as ns
 from nonsmooth.boundary_layer.asymmetric_line import layer_constants
 from nonsmooth.crossing.brownian import brownian_exit, brownian_exit_density
 from nonsmooth.crossing.expansion import Expansion
@@ -47,8 +47,7 @@ def test_exit_density(b, lower):
 @pytest.mark.parametrize("interval", [(-0.3, 0.6), (-np.inf, 0.6), (-0.6, np.inf)])
 def test_without_symmetry_is_a_distribution(interval):
     """Between 0 and 1, and monotone in T, at any p."""
-    scene = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079", start={"y": 0.2})
-    constants, _ = layer_constants(scene)
+    constants, _ = layer_constants(SKEWED_AND_STARTED)
     for p in (1e-2, 1.0, 30.0, 1e3):
         formula = Expansion(constants, *(np.sqrt(p) * np.array(interval)))
         for value in formula.orders(p * np.geomspace(1e-3, 1e3, 300)):

@@ -2,23 +2,22 @@
 
 import numpy as np
 import pytest
+from references import FALSE_ALARM, FRICTION, GAMMA2, W_STAR, W
 from scipy import special, stats
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
 
-SCENE = ns.Scene("friction", n=100)
 HORIZONS = np.linspace(0, 2, 11)[1:]
-FALSE_ALARM = 1e-5
 
 
 @pytest.mark.parametrize(
     ("p", "value", "paths"),
-    [(1, 0.1606775, 50_000), (10, 0.3674251, 20_000), (100, 0.4595991, 5_000)],
+    [(1, W[1], 50_000), (10, W[10], 20_000), (100, W[100], 5_000)],
 )
 def test_published_values_at_T_2(p, value, paths):
     """W(sqrt(p) 0.6, 2 p) known from a Laplace-transform computation, n = 100."""
-    run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=paths, seed=3, step=0.02)
+    run = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=p, paths=paths, seed=3, step=0.02)
     estimate, error = run["probability"][-1], run["probability_error"][-1]
     # bias of h = 0.02: 1.2e-3 of gamma^2 times dW/dlog T < 0.45
     allowed = stats.norm.isf(FALSE_ALARM / 2) * error + 6e-4
@@ -28,7 +27,7 @@ def test_published_values_at_T_2(p, value, paths):
 def test_mirrored_levels_of_an_odd_scene():
     """Dry friction has no side: both one-sided probabilities are the same, within their errors."""
     runs = [
-        ns.crossing_probability(SCENE, levels, HORIZONS, p=10, method="monte_carlo", seed=seed)
+        ns.crossing_probability(FRICTION, levels, HORIZONS, p=10, method="monte_carlo", seed=seed)
         for seed, levels in enumerate([(-np.inf, 0.4), (-0.4, np.inf)])
     ]
     # tol = 1e-2: three standard errors are three quarters of it, at most those of W = 1/2
@@ -41,28 +40,30 @@ def test_mirrored_levels_of_an_odd_scene():
 
 def test_asymptotic_method_is_the_limit():
     """W_star with gamma^2 in closed form; its error is that of gamma^2."""
-    run = ns.crossing_probability(SCENE, 0.6, [2.0], method="asymptotic")
-    assert float(run["probability"][0]) == pytest.approx(0.5045888, abs=5e-8)
+    run = ns.crossing_probability(FRICTION, 0.6, [2.0], method="asymptotic")
+    assert float(run["probability"][0]) == pytest.approx(W_STAR, abs=5e-8)
     assert float(run["probability_error"][0]) < 1e-13
-    one_sided = ns.crossing_probability(SCENE, (-np.inf, 0.6), [2.0], method="asymptotic")
-    exact = special.erfc(0.6 / np.sqrt(2 * 2.0 * 0.137696412899501))
+    one_sided = ns.crossing_probability(FRICTION, (-np.inf, 0.6), [2.0], method="asymptotic")
+    exact = special.erfc(0.6 / np.sqrt(2 * 2.0 * GAMMA2))
     assert float(one_sided["probability"][0]) == pytest.approx(exact, abs=1e-13)
 
 
 def test_distance_to_the_limit_falls_with_p():
     """From 0.34 over 0.14 to 0.045 at T = 2, p = 1, 10, 100 (order p^-1/2)."""
-    limit = ns.crossing_probability(SCENE, 0.6, [2.0], method="asymptotic")["probability"][0]
+    limit = ns.crossing_probability(FRICTION, 0.6, [2.0], method="asymptotic")["probability"][0]
     for p, distance in ((1, 0.344), (10, 0.137), (100, 0.0450)):
-        run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=p, paths=5_000, seed=4, step=0.02)
+        run = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=p, paths=5_000, seed=4, step=0.02)
         error = stats.norm.isf(FALSE_ALARM / 2) * run["probability_error"][-1]
         assert abs(float(limit - run["probability"][-1]) - distance) < error + 1e-3
 
 
 def test_tolerance_is_met():
     """|error| <= tol at every horizon; a false alarm in 100 runs."""
-    exact = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=10, method="deterministic").probability
+    exact = ns.crossing_probability(
+        FRICTION, 0.6, HORIZONS, p=10, method="deterministic"
+    ).probability
     for tol in (3e-2, 1e-2, 3e-3):
-        run = ns.crossing_probability(SCENE, 0.6, HORIZONS, p=10, method="monte_carlo", tol=tol)
+        run = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=10, method="monte_carlo", tol=tol)
         assert np.max(np.abs(run["probability"] - exact)) < tol
 
 
@@ -75,10 +76,12 @@ def test_tolerance_out_of_reach_is_refused_with_the_best_value():
 
 def test_what_hardly_happens_takes_few_paths():
     """Where W is far below tol, some counts by 1/tol show it; a false alarm in 300 runs."""
-    exact = ns.crossing_probability(SCENE, 3.0, HORIZONS, p=10, method="deterministic").probability
+    exact = ns.crossing_probability(
+        FRICTION, 3.0, HORIZONS, p=10, method="deterministic"
+    ).probability
     assert exact[-1] < 1e-5
     for tol, most in ((1e-3, 13_000), (1e-2, 1_200)):
-        run = ns.crossing_probability(SCENE, 3.0, HORIZONS, p=10, method="monte_carlo", tol=tol)
+        run = ns.crossing_probability(FRICTION, 3.0, HORIZONS, p=10, method="monte_carlo", tol=tol)
         assert np.max(np.abs(run["probability"] - exact)) < tol
         assert run.attrs["paths"] <= most
 
@@ -86,11 +89,11 @@ def test_what_hardly_happens_takes_few_paths():
 def test_corrected_formula_is_taken_where_its_error_is_small():
     """At large p, but not where g is above the Lyapunov function or tol below the error."""
     problem = {"threshold": 0.6, "horizons": HORIZONS, "p": 1000.0}
-    run = ns.crossing_probability(SCENE, **problem, tol=1e-4)
-    exact = ns.crossing_probability(SCENE, **problem, method="deterministic")
+    run = ns.crossing_probability(FRICTION, **problem, tol=1e-4)
+    exact = ns.crossing_probability(FRICTION, **problem, method="deterministic")
     assert run.attrs["method"] == "corrected"
     assert np.max(np.abs(run["probability"] - exact["probability"])) < 1e-4
-    assert ns.crossing_probability(SCENE, **problem, tol=2e-8).attrs["method"] == "deterministic"
+    assert ns.crossing_probability(FRICTION, **problem, tol=2e-8).attrs["method"] == "deterministic"
     beyond = ns.Scene("friction", n=100, observable="y**3")
     run = ns.crossing_probability(beyond, 0.6, [2.0], p=1000.0, tol=1e-4)
     assert run.attrs["method"] != "corrected"
@@ -117,7 +120,7 @@ def test_bad_requests_are_refused(arguments, cure):
     """One line with the cure."""
     defaults = {"threshold": 0.6, "horizons": HORIZONS, "p": 1.0, "paths": 100}
     with pytest.raises(SceneError, match=cure):
-        ns.crossing_probability(SCENE, **(defaults | arguments))
+        ns.crossing_probability(FRICTION, **(defaults | arguments))
 
 
 def test_formula_refuses_an_observable_that_is_not_centred():

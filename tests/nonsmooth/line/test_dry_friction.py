@@ -4,12 +4,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from references import GAMMA2, GAMMA2_LIMIT
 from scipy.integrate import quad
 
 from nonsmooth.line.dry_friction import friction_variance
 
 
-@pytest.mark.parametrize(("n", "value"), [(100, 0.137696412899501), (np.inf, 0.137679199643661)])
+@pytest.mark.parametrize(("n", "value"), [(100, GAMMA2), (np.inf, GAMMA2_LIMIT)])
 def test_published_values(n, value):
     """Two values known to fifteen digits."""
     assert friction_variance(n)[0] == pytest.approx(value, abs=2e-15)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import sympy
 from numpy.polynomial import legendre
+from references import FALSE_ALARM, FRICTION
 from scipy import linalg, stats
 from scipy.interpolate import BarycentricInterpolator
 
@@ -23,7 +24,6 @@ from nonsmooth.paths.schemes.registry import SCHEMES, coefficients, scheme
 from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes import symbols
 
-FALSE_ALARM = 1e-5
 HORIZON = 10.0
 
 
@@ -122,7 +122,6 @@ def kinked_second_moment(name, scene, h):
 
 OSCILLATOR = ns.Scene("friction", n=1e-9, potential="x**2/2", observable="x")
 RELAXATION = ns.Scene("friction", n=1e-9)
-KINKED = ns.Scene("friction", n=100)
 LIMIT = ns.Scene("friction", n=np.inf)
 
 
@@ -153,10 +152,10 @@ class TestOrder:
         The published biases, of h = 0.1, 0.02 and 0.005, have two digits, and gather int g at the
         ends of steps, which to the Strang splitting makes a difference of a tenth at h = 0.1.
         """
-        exact = float(ns.variance(KINKED, [HORIZON])["v"][0]) / HORIZON
+        exact = float(ns.variance(FRICTION, [HORIZON])["v"][0]) / HORIZON
         found = {}
         for h, bias in zip((0.1, 0.02, 0.005), published, strict=True):
-            found[h] = kinked_second_moment(name, KINKED, h) / HORIZON - exact
+            found[h] = kinked_second_moment(name, FRICTION, h) / HORIZON - exact
             assert found[h] == pytest.approx(bias, rel=0.12)
         order = np.log(found[0.02] / found[0.005]) / np.log(4)
         assert abs(order - SCHEMES[name].kink_order) < 0.2
@@ -261,11 +260,11 @@ def test_unstable_steps_are_refused(scene, name, step):
 def test_requests_that_no_scheme_can_meet():
     """One line that names the cure."""
     with pytest.raises(SceneError, match="unknown scheme 'heun'"):
-        scheme(KINKED, "heun")
+        scheme(FRICTION, "heun")
     with pytest.raises(SceneError, match="choose 'strang'"):
-        scheme(KINKED, "dry_friction")
+        scheme(FRICTION, "dry_friction")
     assert scheme(LIMIT, "dry_friction") is SCHEMES["dry_friction"]
-    assert scheme(KINKED) is SCHEMES["strang"]
+    assert scheme(FRICTION) is SCHEMES["strang"]
 
 
 def test_scheme_of_the_manual(tmp_path, monkeypatch):

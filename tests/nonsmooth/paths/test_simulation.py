@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import FALSE_ALARM, FRICTION
 from scipy import integrate, stats
 
 import nonsmooth as ns
@@ -17,9 +18,6 @@ from nonsmooth.paths.schemes.registry import coefficients, on_given_increments
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.paths.time_grids import equal_steps, logarithmic
 from nonsmooth.paths.time_loop import march_pair
-
-FRICTION = ns.Scene("friction", n=100)
-FALSE_ALARM = 1e-5
 
 
 def test_spelling_of_a_number_changes_no_stream():

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 import sympy
-from conftest import one_step
+from support import one_step
 
 import nonsmooth as ns
 from nonsmooth.scenes import equations, symbols

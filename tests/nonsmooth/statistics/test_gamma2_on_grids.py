@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 import sympy
+from references import GAMMA2_OBSTACLE, OBSTACLE
 from scipy.integrate import quad
 
 import nonsmooth as ns
@@ -103,10 +104,9 @@ def test_plastic_strain_has_the_growth_rate_of_the_displacement():
 
 
 def test_published_value_of_the_obstacle():
-    """It is 0.441883416, which two codes agreed on."""
-    scene = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
-    found = ns.asymptotic_variance(scene)
-    assert abs(found.value - 0.441883416) <= found.error + 5e-10
+    """Within the stated error, and the rounding of the published digits."""
+    found = ns.asymptotic_variance(OBSTACLE)
+    assert abs(found.value - GAMMA2_OBSTACLE) <= found.error + 5e-10
 
 
 def test_non_smooth_limit_of_the_elasto_plastic_model():

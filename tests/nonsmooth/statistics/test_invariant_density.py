@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from references import FALSE_ALARM, FRICTION, OBSTACLE
 from scipy import stats
 
 import nonsmooth as ns
@@ -18,9 +19,7 @@ from nonsmooth.statistics.invariant_density import (
     invariant_density,
 )
 
-OBSTACLE = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
 PLASTIC = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
-FALSE_ALARM = 1e-5
 
 
 def test_gibbs_density_is_the_grids():
@@ -38,7 +37,7 @@ def test_gibbs_density_is_the_grids():
         assert np.max(error) < 1e-8 * value.max()
 
 
-@pytest.mark.parametrize("scene", [OBSTACLE, ns.Scene("friction", n=100)])
+@pytest.mark.parametrize("scene", [OBSTACLE, FRICTION])
 def test_closed_forms_have_mass_one_and_are_even(scene):
     """By averages over bins that hold all but 1e-12 of the mass."""
     edges = {name: np.linspace(-8, 8, 161) for name in scene.state}
@@ -49,7 +48,7 @@ def test_closed_forms_have_mass_one_and_are_even(scene):
         assert np.all(error < 1e-8 * value.max())
 
 
-@pytest.mark.parametrize("scene", [OBSTACLE, ns.Scene("friction", n=100)])
+@pytest.mark.parametrize("scene", [OBSTACLE, FRICTION])
 def test_closed_forms_are_the_public_densities(scene):
     """With their errors, at any tolerance."""
     found = invariant_density(scene)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 from numpy.polynomial.legendre import leggauss
+from references import OBSTACLE
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
@@ -20,7 +21,7 @@ TAU = np.array([0.0, 0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 100.0, 1000.0])
 SCENES = {
     "friction": ns.Scene("friction", "langevin", n=100),
     "elasto_plastic": ns.Scene("elasto_plastic", n=100, potential="x**2/2"),
-    "obstacle": ns.Scene("obstacle", n=100, potential="x**2/2", observable="x"),
+    "obstacle": OBSTACLE,
 }
 # until which the state is, but for eight standard deviations, where the drift is linear
 EARLY = {"friction": 0.015, "elasto_plastic": 0.3, "obstacle": 0.3}

@@ -5,7 +5,8 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import ROOT
+from references import GAMMA2, GAMMA2_OBSTACLE, W
+from support import ROOT
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
@@ -114,9 +115,9 @@ class TestReferences:
         value, error = (float(found[name][0]) / 100 for name in ("v", "v_error"))
         assert abs(script("pde")["long_run"](n, 100.0) - value) <= error + 1e-13
 
-    @pytest.mark.parametrize(("p", "published"), [(1, 0.1606775), (1000, 0.4902812)])
+    @pytest.mark.parametrize(("p", "published"), [(1, W[1]), (1000, W[1000])])
     def test_inversion_on_a_line(self, script, p, published):
-        """Against seven digits known before (docs/methods/crossing.md)."""
+        """Against seven digits known before."""
         value, error = script("crossing")["on_a_line"](ns.Scene("friction", n=100), 0.6, 2.0, p)
         assert error < 1e-7
         assert abs(value - published) < error + 1e-7
@@ -163,7 +164,7 @@ class TestScripts:
         }
         solved = [
             xr.Dataset({"gamma2": value, "gamma2_error": 1e-9})
-            for value in (0.137696412899501, 0.441883416)  # see docs/methods/statistics.md
+            for value in (GAMMA2, GAMMA2_OBSTACLE)
         ]
         data = script("gamma2")["gamma2"](
             solved, list(scenes), scenes, [8], [[1e-2]] * 3, [2, 4, 6], 0.05, [1_000], 2

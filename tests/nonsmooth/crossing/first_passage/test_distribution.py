@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from references import FRICTION, KAPPA, MIRRORED, SKEWED, W
 from scipy.integrate import simpson
 from scipy.interpolate import CubicSpline
 
@@ -11,9 +12,6 @@ from nonsmooth.errors import AssumptionWarning
 from nonsmooth.kinetic.case_modes import first_passage
 from nonsmooth.kinetic.ordinates_line import ordinates
 
-FRICTION = ns.Scene("friction")  # n = 100, C_b = 1, g = y
-# g without symmetry, centred; 4e-16 is the error of the mean
-SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
 DIGITS = 1e-7  # a unit in the last of seven
 
 
@@ -25,9 +23,7 @@ def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
 class TestDeterministic:
     """First passage against published values, Monte Carlo, and itself in the tails."""
 
-    @pytest.mark.parametrize(
-        ("p", "value"), [(1, 0.1606775), (10, 0.3674251), (100, 0.4595991), (1000, 0.4902812)]
-    )
+    @pytest.mark.parametrize(("p", "value"), W.items())
     def test_published_values(self, p, value):
         """Values of an early prototype on another grid, with seven digits."""
         found = exact(0.6, [2.0], p)
@@ -54,14 +50,13 @@ class TestDeterministic:
     @pytest.mark.parametrize("z", [0.7, 0.3 + 2j, -0.5 + 2j])
     def test_transform_without_symmetry(self, z):
         """Converges in the degree, and the mirrored scene has the mirrored walls."""
-        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
         for levels in ((-0.3, 0.6), (-np.inf, 0.6)):
             values = [
                 first_passage(ordinates(SKEWED, degree, 1.0), z, *levels) for degree in (7, 9, 13)
             ]
             assert abs(values[0] - values[2]) < 1e-6
             assert abs(values[1] - values[2]) < 1e-7
-            swapped = first_passage(ordinates(mirrored, 9, 1.0), z, -levels[1], -levels[0])
+            swapped = first_passage(ordinates(MIRRORED, 9, 1.0), z, -levels[1], -levels[0])
             assert abs(swapped - values[1]) < 1e-9
 
     def test_the_whole_grid_agrees_with_the_half(self, monkeypatch):
@@ -101,9 +96,8 @@ class TestDeterministic:
 
     def test_reflection(self):
         """-g(-y) crosses the thresholds swapped with the same probability."""
-        mirrored = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079")
         one = exact((-0.3, 0.6), [2.0], 1, SKEWED)
-        other = exact((-0.6, 0.3), [2.0], 1, mirrored)
+        other = exact((-0.6, 0.3), [2.0], 1, MIRRORED)
         gap = np.abs(one.probability - other.probability)
         assert np.all(gap <= one.probability_error + other.probability_error)
 
@@ -125,7 +119,7 @@ class TestDeterministic:
             FRICTION, (-np.inf, 0.6), [100.0], p, method="corrected"
         ).probability
         # (kappa / b)^2 / p and the stated error
-        bound = (0.2911259630 / 0.6) ** 2 / p + found.probability_error[0]
+        bound = (KAPPA / 0.6) ** 2 / p + found.probability_error[0]
         assert abs(found.probability[0] - formula[0]) < bound
         assert found.probability_error[0] <= tol
 

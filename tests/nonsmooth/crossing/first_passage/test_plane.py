@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from references import OBSTACLE
 from scipy.integrate import simpson
 
 import nonsmooth as ns
@@ -18,7 +19,6 @@ from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordin
 
 FRICTION = ns.Scene("friction", "langevin")
 PLASTIC = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
-OBSTACLE = ns.Scene("obstacle", potential="x**2/2", observable="x")
 SCENES = {"friction": (FRICTION, 0.3), "plastic": (PLASTIC, 0.3), "obstacle": (OBSTACLE, 0.8)}
 
 

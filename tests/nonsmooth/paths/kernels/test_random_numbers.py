@@ -3,6 +3,7 @@
 import numba
 import numpy as np
 import pytest
+from references import FALSE_ALARM, FRICTION
 from scipy import stats
 
 import nonsmooth as ns
@@ -10,8 +11,6 @@ from nonsmooth.errors import SceneError
 from nonsmooth.paths.kernels import random_numbers
 from nonsmooth.paths.kernels.random_numbers import BLOCK, blocks, generator_words, normals
 
-SCENE = ns.Scene("friction")
-FALSE_ALARM = 1e-5
 # from the state (1, 2, 3, 4): the reference implementation's vector, as the Rust crate
 # rand_xoshiro quotes it, and the draw after 102400 draws, as PHP's test of user engines does
 FIRST = [
@@ -42,7 +41,7 @@ def draws(count):
 @pytest.fixture(scope="module")
 def sample():
     """Return 1e7 normal numbers, (draw, lane), lanes being streams of several blocks."""
-    lanes = np.hstack([generator_words(SCENE, 7, block) for block in range(4)])
+    lanes = np.hstack([generator_words(FRICTION, 7, block) for block in range(4)])
     out = np.empty((2, lanes.shape[1]), dtype=np.float32)
     drawn = []
     for _ in range(10_000_000 // out.size + 1):
@@ -100,7 +99,7 @@ def test_no_correlation(sample):
 
 def test_precisions_share_their_noise():
     """The same bits become the same normal numbers, to single precision."""
-    words = generator_words(SCENE, 3, 0)
+    words = generator_words(FRICTION, 3, 0)
     single, double = np.empty((2, BLOCK), np.float32), np.empty((2, BLOCK))
     normals(words.copy(), single, BLOCK)
     normals(words.copy(), double, BLOCK)
@@ -110,11 +109,11 @@ def test_precisions_share_their_noise():
 def test_streams_are_derived_from_seed_scene_and_block_only():
     """Distinct for distinct ones; the penalization and the spelling of a number do not enter."""
     damped = ns.Scene("friction", damping=2.0)
-    keys = [(s, seed, b) for s in (SCENE, damped) for seed in (1, 2, (1, "a")) for b in (0, 1)]
+    keys = [(s, seed, b) for s in (FRICTION, damped) for seed in (1, 2, (1, "a")) for b in (0, 1)]
     states = np.hstack([generator_words(*key) for key in keys])
     assert len(np.unique(states, axis=1).T) == states.shape[1]
     again = generator_words(ns.Scene("friction", n=3, damping=1), np.int64(1), 0)
-    assert np.array_equal(again, generator_words(SCENE, 1, 0))
+    assert np.array_equal(again, generator_words(FRICTION, 1, 0))
 
 
 def test_blocks():
@@ -124,4 +123,4 @@ def test_blocks():
         blocks(17, 100)
     for seed in (-1, 0.5, "a"):
         with pytest.raises(SceneError, match="non-negative integer"):
-            generator_words(SCENE, seed, 0)
+            generator_words(FRICTION, seed, 0)

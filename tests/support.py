@@ -1,0 +1,82 @@
+"""What several tests use: the repository, copies of it, and single steps of paths."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from nonsmooth.paths.kernels.panel import STATE, new_panel
+from nonsmooth.paths.schemes import strang
+
+ROOT = Path(__file__).parents[1]
+TRACKED = (
+    "Snakefile",
+    "benchmarks",
+    "config.yaml",
+    "config",
+    "workflow",
+    "src",
+    "paper",
+    "profiles",
+    "docs/speed_pde.pdf",
+    "docs/speed_crossing.pdf",
+    "environment-lock.txt",
+    "pyproject.toml",
+)
+
+
+def one_step(scene, z, h, normals=(0.0, 0.0)):
+    """State after one step of the default splitting from z, on the given normal numbers."""
+    s = strang.coefficients(scene, h, "float64")
+    data = new_panel(scene, 0, 0, "float64").data
+    data[list(STATE), 0], data[:2, 0] = z, normals
+    strang.flow(s, data, True, False, 1)
+    strang.kick(s, data, 0, 1)
+    strang.flow(s, data, False, True, 1)
+    return data[list(STATE), 0]
+
+
+class Repository:
+    """A copy of the repository and the snakemake of this environment."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def snakemake(self, *arguments):
+        """Run snakemake with the smoke configuration; return the finished process."""
+        return subprocess.run(
+            [sys.executable, "-m", "snakemake", "--configfile", "config/smoke.yaml", *arguments],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=600,  # against a hang; a busy machine takes several times the usual
+        )
+
+    def jobs(self, *targets):
+        """Dry-run; return the rules that would run and how often."""
+        run = self.snakemake("--cores", "1", "--dry-run", "--", *targets)
+        assert run.returncode == 0, run.stderr
+        counts, inside = {}, False
+        for line in run.stdout.splitlines() + run.stderr.splitlines():
+            words = line.split()
+            if words[:2] == ["job", "count"]:
+                inside = True
+            elif inside and len(words) == 2 and words[1].isdigit():
+                if words[0] == "total":
+                    break
+                counts[words[0]] = int(words[1])
+        counts.pop("all", None)
+        return counts
+
+
+def copy_repository(destination, *extra):
+    """Copy what git tracks of the workflow, and more where it is asked for."""
+    for name in (*TRACKED, *extra):
+        source = ROOT / name if name in TRACKED else Path(name)
+        if source.is_dir():
+            skip = shutil.ignore_patterns("__pycache__", "*.pdf", "*.egg-info")
+            shutil.copytree(source, destination / name, ignore=skip)
+        else:
+            (destination / name).parent.mkdir(exist_ok=True)
+            shutil.copy2(source, destination / name)
+    return Repository(destination)
