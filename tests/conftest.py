@@ -4,6 +4,7 @@ import runpy
 import shutil
 
 import pytest
+
 from support import ROOT, Repository, copy_repository
 
 

@@ -13,6 +13,8 @@ FALSE_ALARM = 1e-5  # the probability with which a correct sample fails a test
 
 FRICTION = ns.Scene("friction", n=100)  # g = y
 OBSTACLE = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
+COLORED_FRICTION = ns.Scene("friction", "langevin")
+PLASTIC_STRAIN = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
 # dry friction with a g without symmetry, centred; 4e-16 is the error of the mean
 SKEWED = ns.Scene("friction", observable="y + 0.3*abs(y) - 0.0958534263954079")
 SKEWED_AND_STARTED = replace(SKEWED, start={"y": 0.2})

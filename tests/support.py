@@ -1,10 +1,12 @@
-"""What several tests use: the repository, copies of it, and single steps of paths."""
+"""What several tests use: the repository, copies of it, single steps of paths, coarse grids."""
 
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
+from nonsmooth.kinetic.ordinates_plane import boxed, plane_ordinates
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.schemes import strang
 
@@ -34,6 +36,14 @@ def one_step(scene, z, h, normals=(0.0, 0.0)):
     strang.kick(s, data, 0, 1)
     strang.flow(s, data, False, True, 1)
     return data[list(STATE), 0]
+
+
+def coarse_ordinates(scene):
+    """Grid of a scene with two variables for the kinetic equation; Gibbs weights for obstacles."""
+    ends = boxed(scene)
+    if scene.model == "obstacle":
+        return gibbs_ordinates(scene, ends, 0)
+    return plane_ordinates(scene, ends, 0, 1.0)
 
 
 class Repository:

@@ -4,10 +4,10 @@ import copy
 
 import pytest
 import yaml
-from support import ROOT
 
 from nonsmooth.errors import NonsmoothError
 from reproduction.configuration import validate
+from support import ROOT
 from workflow.experiment import SCHEMA, check, label, shards
 
 CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())

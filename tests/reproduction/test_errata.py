@@ -4,12 +4,12 @@ import re
 
 import pytest
 import yaml
-from support import ROOT
 
 from nonsmooth.line.dry_friction import friction_variance
 from reproduction.errata.entries import ERRATA
 from reproduction.errata.record import Evidence
 from reproduction.printed import numbered
+from support import ROOT
 
 LABELS = [erratum.label for erratum in ERRATA]
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from references import FALSE_ALARM, FRICTION, GAMMA2, KAPPA
 from scipy import stats
 
 from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.paths.sampling import Sampling
+from references import FALSE_ALARM, FRICTION, GAMMA2, KAPPA
 from reproduction.limit_theorem import (
     allowed_distance,
     distance_to_limit,

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.special import ndtr, ndtri
-from support import ROOT
 
 from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.counting import crossing_estimate
@@ -17,6 +16,7 @@ from nonsmooth.theory.drift_condition import margins
 from nonsmooth.theory.ergodicity import Bound
 from reproduction.errata.record import Erratum, Evidence
 from reproduction.errors import CheckError
+from support import ROOT
 
 TAU = np.array([0.1, 1.0, 10.0])
 SCRIPTS = ROOT / "workflow" / "scripts"

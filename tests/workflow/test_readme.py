@@ -5,9 +5,8 @@ from contextlib import redirect_stdout
 from fnmatch import fnmatch
 from io import StringIO
 
-from support import ROOT
-
 from reproduction import artifact
+from support import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 RESULTS = (ROOT / "results" / "README.md").read_text(encoding="utf-8")

@@ -9,10 +9,10 @@ import sys
 import pandas as pd
 import pytest
 import typst
-from support import ROOT
 
 import nonsmooth as ns
 from reproduction import artifact
+from support import ROOT
 
 RESULTS = "results/smoke"
 FIGURES = [f"figure_{name}" for name in ("1", "2a", "2b", *"3456789", "10", "12")]

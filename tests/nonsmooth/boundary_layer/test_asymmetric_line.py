@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from references import KAPPA, MIRRORED, SKEWED, SKEWED_AND_STARTED
 
 import nonsmooth as ns
 from nonsmooth.boundary_layer import symmetric_line
 from nonsmooth.boundary_layer.asymmetric_line import layer_constants
 from nonsmooth.line.eigenfunctions import spectrum
 from nonsmooth.line.quadrature import mean as stationary_mean
+from references import KAPPA, MIRRORED, SKEWED, SKEWED_AND_STARTED
 
 
 @pytest.fixture(scope="module")

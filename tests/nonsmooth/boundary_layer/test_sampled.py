@@ -1,10 +1,9 @@
 """kappa and the Poisson solution by Monte Carlo."""
 
-from references import FRICTION, KAPPA
-
 import nonsmooth as ns
 from nonsmooth.boundary_layer.sampled import sampled_kappa, sampled_poisson
 from nonsmooth.boundary_layer.symmetric_line import layer_constants
+from references import FRICTION, KAPPA
 
 
 def test_kappa_of_dry_friction():

@@ -3,10 +3,10 @@
 import mpmath
 import numpy as np
 import pytest
-from references import FRICTION, GAMMA2, KAPPA
 
 import nonsmooth as ns
 from nonsmooth.boundary_layer.symmetric_line import layer_constants
+from references import FRICTION, GAMMA2, KAPPA
 
 
 def test_kappa_of_ornstein_uhlenbeck():

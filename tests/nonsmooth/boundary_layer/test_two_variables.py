@@ -30,20 +30,6 @@ def test_yielding_displacement():
     assert abs(total.value - (plastic.value - 1)) <= total.error + plastic.error + 1e-4
 
 
-def test_corrected_formula():
-    """Against Monte Carlo, where the plain formula is off by 0.1; 4.5 sigma, and O(1/p)."""
-    scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
-    problem = scene, 0.6, [2.0], 100
-    found = ns.crossing_probability(*problem, method="corrected")
-    sampled = ns.crossing_probability(*problem, step=0.1, paths=4000, seed=1)
-    sigma = np.hypot(sampled.probability_error, sampled.step_bias_error)
-    difference = found.probability - sampled.probability + sampled.step_bias
-    order = (0.42 / 0.6) ** 2 / 100  # (kappa / b)^2 / p
-    assert np.all(np.abs(difference) <= 4.5 * sigma + order)
-    with pytest.raises(ns.NonsmoothError, match="use order=1"):
-        ns.crossing_probability(*problem, method="corrected", order=2)
-
-
 def test_bounded_observable():
     """Velocities whose integral stays bounded have gamma^2 = 0, and no extrapolation length."""
     with pytest.raises(ns.NonsmoothError, match="no extrapolation length"):

@@ -3,11 +3,11 @@
 import mpmath
 import numpy as np
 import pytest
-from references import GAMMA2, W_STAR
 
 import nonsmooth as ns
 from nonsmooth.crossing.brownian import asymptotic_crossing, brownian_exit
 from nonsmooth.errors import SceneError
+from references import GAMMA2, W_STAR
 
 FUNCTIONS = (ns.brownian_crossing, ns.brownian_survival, ns.brownian_first_passage_density)
 ROUNDOFF = 2.0**-53

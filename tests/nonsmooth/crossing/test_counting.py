@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from references import FALSE_ALARM, FRICTION, GAMMA2, KAPPA
 from scipy import special, stats
 
 import nonsmooth as ns
@@ -13,6 +12,7 @@ from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.moments import step_bias
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.thresholds import bounds
+from references import FALSE_ALARM, FRICTION, GAMMA2, KAPPA
 
 HORIZONS = np.linspace(0, 2, 11)[1:]
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from references import SKEWED_AND_STARTED
 from scipy import stats
 from scipy.integrate import quad
 
@@ -10,6 +9,7 @@ from nonsmooth.boundary_layer.asymmetric_line import layer_constants
 from nonsmooth.crossing.brownian import brownian_exit, brownian_exit_density
 from nonsmooth.crossing.expansion import Expansion
 from nonsmooth.crossing.random_clock import averaged
+from references import SKEWED_AND_STARTED
 
 
 class TestRandomClock:

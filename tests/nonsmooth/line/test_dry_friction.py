@@ -4,10 +4,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from references import GAMMA2, GAMMA2_LIMIT
 from scipy.integrate import quad
 
 from nonsmooth.line.dry_friction import friction_variance
+from references import GAMMA2, GAMMA2_LIMIT
 
 
 @pytest.mark.parametrize(("n", "value"), [(100, GAMMA2), (np.inf, GAMMA2_LIMIT)])

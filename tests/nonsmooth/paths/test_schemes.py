@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import sympy
 from numpy.polynomial import legendre
-from references import FALSE_ALARM, FRICTION
 from scipy import linalg, stats
 from scipy.interpolate import BarycentricInterpolator
 
@@ -23,6 +22,7 @@ from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.schemes.registry import SCHEMES, coefficients, scheme
 from nonsmooth.paths.time_loop import march
 from nonsmooth.scenes import symbols
+from references import FALSE_ALARM, FRICTION
 
 HORIZON = 10.0
 

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from references import FALSE_ALARM, FRICTION
 from scipy import integrate, stats
 
 import nonsmooth as ns
@@ -18,6 +17,7 @@ from nonsmooth.paths.schemes.registry import coefficients, on_given_increments
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.paths.time_grids import equal_steps, logarithmic
 from nonsmooth.paths.time_loop import march_pair
+from references import FALSE_ALARM, FRICTION
 
 
 def test_spelling_of_a_number_changes_no_stream():

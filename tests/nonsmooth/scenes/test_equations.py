@@ -5,7 +5,6 @@ import itertools
 import numpy as np
 import pytest
 import sympy
-from support import one_step
 
 import nonsmooth as ns
 from nonsmooth.scenes import equations, symbols
@@ -13,6 +12,7 @@ from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.models.friction import FRICTION
 from nonsmooth.scenes.models.obstacle import OBSTACLE
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x, y
+from support import one_step
 
 NOISES = {
     "white": "white",

@@ -1,17 +1,15 @@
-"""gamma^2 on tensor grids against what is known exactly, and each part of the discretisation."""
+"""gamma^2 on tensor grids against what is known exactly."""
 
 import numpy as np
 import pytest
 import scipy.linalg
 import sympy
-from references import GAMMA2_OBSTACLE, OBSTACLE
 from scipy.integrate import quad
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids import elements, generator, tensor_grid
-from nonsmooth.grids.mesh.axes import axes as axes_of
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x, y
+from references import GAMMA2_OBSTACLE, OBSTACLE
 
 
 def linear_reference(scene, square):
@@ -124,39 +122,3 @@ def test_a_bounded_integral_is_refused():
     """G = y between walls: gamma^2 = 0 cannot have a relative error."""
     with pytest.raises(ToleranceError, match="error of"):
         ns.asymptotic_variance(ns.Scene("obstacle", potential="x**2/2"), tol=1e-3)
-
-
-def test_the_generator_is_exact_on_polynomials():
-    """A_n f of a quadratic f at the nodes, computed symbolically; linear drift between kinks."""
-    scene = ns.Scene("elasto_plastic", n=10, potential="x**2/2")
-    axes = axes_of(scene, {y: 3.0, x: 1.5}, {y: 1, x: 1})
-    matrix = generator.assemble(scene, axes)
-    f = x**2 + x * y + y**2
-    drift = scene.numerical_drift()
-    exact = sum(drift[s] * sympy.diff(f, s) for s in (y, x)) + sympy.diff(f, y, 2) / 2
-    found = matrix @ generator.evaluate(f, axes)
-    wanted = generator.evaluate(exact, axes)
-    # the weak second derivative has zero slope at the ends: compare within
-    inside = generator.evaluate(sympy.Abs(y), axes) < 2.9
-    scale = np.abs(wanted).max()
-    edges = np.isin(generator.evaluate(y, axes), axes[y].edges)
-    assert np.max(np.abs(found - wanted)[inside & ~edges]) < 1e-10 * scale
-    assert np.max(np.abs(matrix @ np.ones(matrix.shape[0]))) < 1e-9
-
-
-@pytest.mark.parametrize("make", [elements.continuous, elements.discontinuous])
-def test_interpolation_is_exact_on_polynomials(make):
-    """A cubic on elements of degree 3, at points within, on edges and outside."""
-    axis = make(np.array([-1.0, 0.3, 2.0]), 3)
-    points = np.array([-1.0, -0.4, 0.3, 1.9, 2.0])
-    cubic = axis.nodes**3 - axis.nodes
-    assert axis.interpolation(points) @ cubic == pytest.approx(points**3 - points, abs=1e-13)
-    assert axis.interpolation([2.5]) @ cubic == 0
-    assert axis.weights @ cubic == pytest.approx((2.0**4 - 1) / 4 - (2.0**2 - 1) / 2)
-
-
-def test_the_box_holds_the_invariant_density():
-    """The velocity of an obstacle scene is normal with variance sigma^2 / (2 C_b)."""
-    scene = ns.Scene("obstacle", ns.White(2.0), n=100, damping=0.5, potential="x**2/2")
-    grid = tensor_grid.fitted(scene, 20.0, 2)
-    assert grid.ends[y] == pytest.approx(2.0 * np.sqrt(40.0), rel=0.15)

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from references import FALSE_ALARM, FRICTION, OBSTACLE
 from scipy import stats
 
 import nonsmooth as ns
@@ -18,6 +17,7 @@ from nonsmooth.statistics.invariant_density import (
     densities_on,
     invariant_density,
 )
+from references import FALSE_ALARM, FRICTION, OBSTACLE
 
 PLASTIC = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import scipy.linalg
 from numpy.polynomial.legendre import leggauss
-from references import OBSTACLE
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
@@ -16,6 +15,7 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.statistics import moments_on_grids, tuning
+from references import OBSTACLE
 
 TAU = np.array([0.0, 0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 100.0, 1000.0])
 SCENES = {

@@ -5,11 +5,10 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from references import GAMMA2, GAMMA2_OBSTACLE, W
-from support import ROOT
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
+from references import GAMMA2, GAMMA2_OBSTACLE, W
 from reproduction.errors import CheckError
 from reproduction.speed_against_error.pathwise import BrownianPaths
 from reproduction.speed_against_error.work_precision import (
@@ -21,6 +20,7 @@ from reproduction.speed_against_error.work_precision import (
     timed,
     unseeded,
 )
+from support import ROOT
 
 DIFFERENCES = ROOT / "benchmarks" / "peers" / "differences.py"
 

@@ -3,31 +3,21 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from references import OBSTACLE
-from scipy.integrate import simpson
 
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import plane, tuning
-from nonsmooth.crossing.first_passage.time_stepping import PlaneProblemInTime
-from nonsmooth.errors import SceneError
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.adding_doubling import slab
-from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
+from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
+from support import coarse_ordinates
 
-FRICTION = ns.Scene("friction", "langevin")
-PLASTIC = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
-SCENES = {"friction": (FRICTION, 0.3), "plastic": (PLASTIC, 0.3), "obstacle": (OBSTACLE, 0.8)}
-
-
-def grid_of(scene):
-    """Discretise a scene, coarsely."""
-    ends = boxed(scene)
-    if scene is OBSTACLE:
-        return gibbs_ordinates(scene, ends, 0)
-    return plane_ordinates(scene, ends, 0, 1.0)
+SCENES = {
+    "friction": (COLORED_FRICTION, 0.3),
+    "plastic": (PLASTIC_STRAIN, 0.3),
+    "obstacle": (OBSTACLE, 0.8),
+}
 
 
 def of_one_variable(line):
@@ -62,20 +52,10 @@ class TestSlab:
         assert abs(fine - exact) < tuning.PLANE.default_tolerance / 5
 
     @pytest.mark.parametrize("name", SCENES)
-    def test_is_passive_and_conserves(self, name):
-        """Constants are lost at the rate z only: 1 - (R + S) 1 is of the order z."""
-        grid = grid_of(SCENES[name][0])
-        for z in (1e-6, 1e-8):
-            made = slab(grid, z, 1.0, 8)
-            ones = grid.ones[: len(grid.speeds)]
-            lost = ones - (made.reflection + made.transmission) @ ones
-            assert np.max(np.abs(lost)) < 1e3 * z + 1e-9
-
-    @pytest.mark.parametrize("name", SCENES)
     def test_exits_surely(self, name):
         """(1 - h) / z tends to the mean exit time, from below for it is convex."""
         scene, level = SCENES[name]
-        grid = grid_of(scene)
+        grid = coarse_ordinates(scene)
         mean = [
             (1 - plane.first_passage(grid, z, -level, level, 1)) / z for z in (1e-2, 1e-4, 1e-6)
         ]
@@ -99,7 +79,7 @@ class TestSlab:
 
     def test_one_wall_far_away_is_none(self):
         """A wall that is not reached."""
-        grid, z = grid_of(PLASTIC), 1.0
+        grid, z = coarse_ordinates(PLASTIC_STRAIN), 1.0
         far = plane.first_passage(grid, z, -40.0, 0.3, 0)
         assert far == pytest.approx(plane.first_passage(grid, z, -np.inf, 0.3, 0), abs=1e-6)
 
@@ -126,23 +106,3 @@ class TestCrossing:
         allowed = 4.5 * sample.probability_error + np.abs(sample.step_bias)
         allowed += 4.5 * sample.step_bias_error + found.probability_error
         assert np.all(np.abs(found.probability - sample.probability) < allowed)
-
-    @pytest.mark.parametrize(
-        ("name", "levels"), [("friction", (-0.3, 0.3)), ("obstacle", (-0.8, 1.2))]
-    )
-    def test_marching_agrees_with_the_transform(self, name, levels):
-        """Of the marched curve, integrated to exp(-10); each on a coarse grid, good to 5e-4."""
-        scene, z = SCENES[name][0], 0.5
-        marched = PlaneProblemInTime(plane.PlaneProblem(scene, *levels))
-        times = np.linspace(0.0, 20.0, 801)[1:]
-        found = marched.solve(times, marched.settings.levels[0])[0]
-        integral = z * simpson(np.append(0.0, np.exp(-z * times) * found), dx=times[0])
-        integral += np.exp(-z * times[-1]) * found[-1]
-        transform = plane.PlaneProblem(scene, *levels).transform(0, times, 0.0)
-        assert integral == pytest.approx(transform(z), abs=1e-3)
-
-    def test_a_scene_of_four_variables_is_told_to_sample(self):
-        """The message names the method."""
-        scene = ns.Scene("elasto_plastic", "hamiltonian")
-        with pytest.raises(SceneError, match="monte_carlo"):
-            ns.crossing_probability(scene, 0.3, [1.0], 30, method="deterministic")

@@ -3,13 +3,13 @@
 import numba
 import numpy as np
 import pytest
-from references import FALSE_ALARM, FRICTION
 from scipy import stats
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.kernels import random_numbers
 from nonsmooth.paths.kernels.random_numbers import BLOCK, blocks, generator_words, normals
+from references import FALSE_ALARM, FRICTION
 
 # from the state (1, 2, 3, 4): the reference implementation's vector, as the Rust crate
 # rand_xoshiro quotes it, and the draw after 102400 draws, as PHP's test of user engines does

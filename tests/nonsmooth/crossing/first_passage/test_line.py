@@ -1,0 +1,165 @@
+"""First passage of one variable by Case's elementary solutions and inverted transforms."""
+
+import numpy as np
+import pytest
+from scipy.integrate import simpson
+from scipy.interpolate import CubicSpline
+
+import nonsmooth as ns
+from nonsmooth.errors import AssumptionWarning
+from nonsmooth.kinetic.case_modes import first_passage
+from nonsmooth.kinetic.ordinates_line import ordinates
+from references import FRICTION, KAPPA, MIRRORED, SKEWED, W
+
+DIGITS = 1e-7  # a unit in the last of seven
+
+
+def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
+    """Values of the deterministic method."""
+    return ns.crossing_probability(scene, threshold, horizons, p, method="deterministic", tol=tol)
+
+
+class TestDeterministic:
+    """First passage against published values, Monte Carlo, and itself in the tails."""
+
+    @pytest.mark.parametrize(("p", "value"), W.items())
+    def test_published_values(self, p, value):
+        """Values of an early prototype on another grid, with seven digits."""
+        found = exact(0.6, [2.0], p)
+        assert abs(found.probability[0] - value) < found.probability_error[0] + DIGITS
+
+    def test_monte_carlo_of_one_sided_and_unequal_thresholds(self):
+        """Two comparisons within 4.5 standard errors and the step's bias: false alarms 1e-5."""
+        for threshold in ((-np.inf, 0.6), (-0.3, 0.6)):
+            sample = ns.crossing_probability(
+                FRICTION, threshold, [2.0], 1, paths=40_000, step=0.02, seed=5
+            )
+            bias = np.abs(sample.step_bias) + sample.step_bias_error
+            gap = np.abs(sample.probability - exact(threshold, [2.0], 1).probability)
+            assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    @pytest.mark.parametrize("threshold", [(-np.inf, 0.6), (-0.3, 0.6)])
+    def test_monte_carlo_without_symmetry(self, threshold):
+        """As above; false alarms 1e-5."""
+        sample = ns.crossing_probability(SKEWED, threshold, [2.0], 1, paths=40_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        gap = np.abs(sample.probability - exact(threshold, [2.0], 1, SKEWED).probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    def test_the_whole_grid_agrees_with_the_half(self, monkeypatch):
+        """Odd g, within both stated errors, with equal and unequal thresholds."""
+        thresholds = 0.6, (-0.3, 0.6)
+        halves = [exact(threshold, [2.0], 1) for threshold in thresholds]
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
+        for threshold, half in zip(thresholds, halves, strict=True):
+            whole = exact(threshold, [2.0], 1)
+            gap = np.abs(whole.probability - half.probability)
+            assert np.all(gap <= whole.probability_error + half.probability_error)
+
+    def test_rounding_of_the_half_grid_is_stated(self, monkeypatch):
+        """Late, where the modes of mirror images lose digits that those of the whole grid keep."""
+        halves = exact((-6.0, 7.0), [40.0, 400.0], 1)
+        monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
+        wholes = exact((-6.0, 7.0), [40.0, 400.0], 1)
+        gap = np.abs(wholes.probability - halves.probability)
+        assert np.all(gap <= wholes.probability_error + halves.probability_error)
+
+    def test_soon_after_the_rise_without_symmetry(self):
+        """Poles off the axis still count; against a vertical line, on which nothing grows.
+
+        Its error, below 1e-9: exp(-24) of periods, rounding of 1e-12 times exp(8) F(8/t), terms
+        below 1e-12 of the largest, which is of order 20.
+        """
+        scene = ns.Scene("friction", observable="y + 0.5*sin(y)**2 - 0.0718281158505784")
+        found = exact(0.6, [0.5, 1.15, 23.0], 1, scene)
+        time, grid = 1.15, ordinates(scene, 9, 1.15, 12.0, 40.0, distances=(0.6, 0.6))
+        step = 2 * np.pi / (3 * time)
+        z, terms = 8 / time + 1j * step / 2, []
+        while not terms or abs(terms[-1]) > 1e-12 * abs(terms[0]):
+            terms.append(np.exp(z * time) * first_passage(grid, z, -0.6, 0.6) / z)
+            z += 1j * step
+        reference = step / np.pi * np.sum(terms).real
+        assert abs(found.probability[1] - reference) <= found.probability_error[1] + 1e-9
+
+    def test_reflection(self):
+        """-g(-y) crosses the thresholds swapped with the same probability."""
+        one = exact((-0.3, 0.6), [2.0], 1, SKEWED)
+        other = exact((-0.6, 0.3), [2.0], 1, MIRRORED)
+        gap = np.abs(one.probability - other.probability)
+        assert np.all(gap <= one.probability_error + other.probability_error)
+
+    def test_two_zeros_of_g(self):
+        """A g that is positive in both tails; false alarms 1e-5."""
+        with pytest.warns(AssumptionWarning):
+            scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
+        sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        found = exact(0.6, [2.0], 1, scene, tol=1e-4)
+        gap = np.abs(sample.probability - found.probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0] + 1e-4
+
+    @pytest.mark.parametrize(("p", "tol"), [(1e4, 1e-7), (1e6, 1e-6)])
+    def test_late_times_of_one_wall(self, p, tol):
+        """The slow mode is 1e4 times the others; W is that of first order but for O(1/p)."""
+        found = exact((-np.inf, 0.6), [100.0], p, tol=tol)
+        formula = ns.crossing_probability(
+            FRICTION, (-np.inf, 0.6), [100.0], p, method="corrected"
+        ).probability
+        # (kappa / b)^2 / p and the stated error
+        bound = (KAPPA / 0.6) ** 2 / p + found.probability_error[0]
+        assert abs(found.probability[0] - formula[0]) < bound
+        assert found.probability_error[0] <= tol
+
+    def test_g_that_vanishes_on_a_half_line(self):
+        """Int g increases only, at twice the rate of y, while y > 0; false alarms 1e-5."""
+        scene = ns.Scene("friction", observable="y + abs(y)")
+        found = exact(0.6, [1.0], 1, scene)
+        sample = ns.crossing_probability(scene, 0.6, [1.0], 1, paths=20_000, step=0.02)
+        bias = np.abs(sample.step_bias) + sample.step_bias_error
+        gap = np.abs(sample.probability - found.probability)
+        assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+
+    def test_survival_decays_like_its_leading_pole(self):
+        """To relative accuracy, far below the rounding of 1 - W."""
+        survival = exact(0.6, [60.0, 80.0, 100.0], 1000).survival.values
+        assert survival[-1] < 1e-13
+        assert survival[2] / survival[1] == pytest.approx(survival[1] / survival[0], rel=1e-3)
+
+    def test_rare_crossings_are_bounded_or_resolved(self):
+        """Below 1e-14 the bound is the error; above, the error is relative."""
+        found = exact(0.6, [1e-3, 0.05, 0.1], 1e4)
+        assert found.probability[0] == 0
+        assert found.probability_error[0] >= 1e-14
+        assert np.all(np.diff(found.probability) > 0)
+        assert found.probability_error[1] < 1e-3 * found.probability[1] < 1e-10
+
+    def test_a_crossing_that_is_out_of_reach(self):
+        """The transform is below rounding on all of the axis that matters."""
+        found = exact(10.0, [0.005, 0.01], 0.01)
+        assert np.all(found.probability == 0)
+        assert np.all(found.probability_error <= 1e-13)
+        assert np.all(found.survival == 1)
+
+    @pytest.mark.parametrize(("threshold", "p"), [(0.05, 1), (0.6, 0.01), (3.0, 30)])
+    def test_a_curve_over_four_decades(self, threshold, p):
+        """A distribution that rises from nothing, within the error asked for."""
+        found = exact(threshold, np.geomspace(0.01, 100, 20), p)
+        errors = found.probability_error.values
+        assert np.all(np.diff(found.probability) >= -errors[1:] - errors[:-1])
+        assert np.all(found.probability_error <= 1e-7)
+        assert found.probability[0] < 1e-8
+        assert found.probability[-1] > 0.5
+
+    def test_transform_of_the_rise(self):
+        """The values have the transform at 2 that comes from a finer grid, on the axis.
+
+        A cubic spline of log P through 28 points per decade leaves less than 1e-5.
+        """
+        times = np.geomspace(0.3, 40.0, 60)
+        found = exact(0.6, times, 1).probability.values
+        seen = found > 0
+        spline = CubicSpline(np.log(times[seen]), np.log(found[seen]))
+        fine = np.geomspace(times[seen][0], times[-1], 20_001)
+        transform = simpson(2 * np.exp(-2 * fine + spline(np.log(fine))), x=fine)
+        expected = first_passage(ordinates(FRICTION, 13, 0.1), 2.0, -0.6, 0.6).real
+        assert transform == pytest.approx(expected, rel=1e-5)
