@@ -10,8 +10,8 @@ import yaml
 from nonsmooth.errors import AssumptionWarning, SceneError
 from nonsmooth.scenes.noises import Langevin
 from nonsmooth.scenes.scene import Scene, by_formulas
-from reproduction.configuration import validate
 from reproduction.errors import ConfigError
+from reproduction.jobs.configuration import validate
 from reproduction.plasticity import yielding_oscillator
 
 SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"

@@ -1,25 +1,14 @@
 """What only the paper needs: its results as files, figures and tables, and its examples.
 
-The workflow's scripts call this package, and it calls the library `nonsmooth`. A script is run by
-`jobs.produce`, which reads the artifacts it needs and writes its own, or by `plots.draw` and
-`tables.typeset`, which write a figure or a table instead.
+The workflow's scripts call this package, and it calls the library `nonsmooth`. Two packages serve
+all topics of the paper; every other module or package is one topic.
 
-`artifact`
-    netCDF files with units, errors and provenance: `dataset`, `write`, `read`, `provenance`.
+`jobs`
+    How a script runs, and the files that it reads and writes.
+`rendering`
+    Figures, tables and what the paper prints.
 `errors`
     What a user of the workflow can cause: `ConfigError`, `ArtifactError`, `CheckError`.
-`files`
-    `whole`: a file is written completely or not at all.
-`jobs`
-    `job`, `produce`: how a script runs, and what it says if it fails.
-`configuration`
-    `validate`: errors of the configuration in one line.
-`printed`
-    `printed_values`, `numbered`: what the paper prints, and how it numbers its equations.
-`paper_values`
-    `paper_values`: the numbers that the text of the paper quotes, spelt as they stand there.
-`plots`, `tables`
-    `draw` and the style of the figures; `typeset` and how numbers are spelled.
 `gamma2`
     `compared`: the asymptotic variance by two methods, side by side.
 `finite_p`
@@ -32,6 +21,8 @@ The workflow's scripts call this package, and it calls the library `nonsmooth`. 
     `yielding_oscillator`: the example of a structure in an earthquake.
 `errata`, `hard_cases`
     What is wrong in the paper, and cases in which methods might fail, each with its evidence.
+`paper_values`
+    `paper_values`: the numbers that the text of the paper quotes, spelt as they stand there.
 `speed_against_error`
     Work-precision diagrams.
 """

@@ -6,7 +6,7 @@ import numpy as np
 
 from nonsmooth.scenes.scene import Scene
 from reproduction.errors import CheckError
-from reproduction.tables import scientific
+from reproduction.rendering.tables import scientific
 
 ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7
 

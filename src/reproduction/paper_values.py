@@ -15,8 +15,8 @@ from sympy import latex
 from nonsmooth.scenes.formulas import parse
 from nonsmooth.scenes.symbols import eta, x
 from reproduction.plasticity import relaxation_time
-from reproduction.printed import printed_values
-from reproduction.tables import penalization, scientific
+from reproduction.rendering.printed import printed_values
+from reproduction.rendering.tables import penalization, scientific
 
 SIGNIFICANT = 3.0  # standard errors from which on the text calls the formula too low
 

@@ -8,7 +8,7 @@ import yaml
 from nonsmooth.line.dry_friction import friction_variance
 from reproduction.errata.entries import ERRATA
 from reproduction.errata.record import Evidence
-from reproduction.printed import numbered
+from reproduction.rendering.printed import numbered
 from support import ROOT
 
 LABELS = [erratum.label for erratum in ERRATA]

@@ -5,7 +5,7 @@ from contextlib import redirect_stdout
 from fnmatch import fnmatch
 from io import StringIO
 
-from reproduction import artifact
+from reproduction.jobs import artifact
 from support import ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 import typst
 
 import nonsmooth as ns
-from reproduction import artifact
+from reproduction.jobs import artifact
 from support import ROOT
 
 RESULTS = "results/smoke"

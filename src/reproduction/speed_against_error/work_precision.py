@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reproduction import artifact
 from reproduction.errors import CheckError
+from reproduction.jobs import artifact
 
 
 @dataclass(frozen=True)

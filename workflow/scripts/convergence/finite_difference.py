@@ -2,8 +2,8 @@
 
 from nonsmooth.line.finite_differences import moments_with_error
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def paper_scheme(scene, n, horizon, half_width, nodes, time_step):

@@ -3,8 +3,8 @@
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.variance import variance
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def reference(scene, n, horizon, tolerance):

@@ -2,8 +2,8 @@
 
 import pandas as pd
 
-from reproduction.printed import printed_values
-from reproduction.tables import penalization, scientific, sorted_by, typeset
+from reproduction.rendering.printed import printed_values
+from reproduction.rendering.tables import penalization, scientific, sorted_by, typeset
 
 
 def convergence(spectral, finite_difference):

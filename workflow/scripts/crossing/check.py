@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.special import ndtri
 
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
-from reproduction.tables import sorted_by
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
+from reproduction.rendering.tables import sorted_by
 
 FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 

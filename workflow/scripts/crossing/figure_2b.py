@@ -3,8 +3,8 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reproduction.plots import BLACK, LOOKS, ORANGE, TEXT_WIDTH, draw, from_zero
-from reproduction.tables import sorted_by
+from reproduction.rendering.plots import BLACK, LOOKS, ORANGE, TEXT_WIDTH, draw, from_zero
+from reproduction.rendering.tables import sorted_by
 
 
 def crossing(monte_carlo, exact, asymptotic, check, contained):

@@ -8,8 +8,8 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.variance import variance
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def bias_of_gamma2(scene, time, step, paths, seed, threads):

@@ -7,8 +7,8 @@ from nonsmooth.errors import SceneError
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def halving(scene, threshold, horizon, p, step, paths, seed, threads):

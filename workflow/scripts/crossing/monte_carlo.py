@@ -3,8 +3,8 @@
 import numpy as np
 
 from nonsmooth.crossing.counting import DESCRIPTIONS, crossing_estimate
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def merge(shards, halving, p):

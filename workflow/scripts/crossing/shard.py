@@ -7,8 +7,8 @@ import numpy as np
 from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from reproduction.tables import scientific, typeset
+from reproduction.rendering.tables import scientific, typeset
 
 
 def time_step(check):

@@ -1,7 +1,7 @@
 """Figure 7: invariant densities of every scene, by solvers and by simulation."""
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.plots import BLUE, ORANGE, draw, scene_panels
+from reproduction.rendering.plots import BLUE, ORANGE, draw, scene_panels
 
 LOOKS = {
     "y": (BLUE, "o", "-", "velocity $y$"),

@@ -9,8 +9,8 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x
 from nonsmooth.statistics.invariant_density import bin_averages
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 TITLES = {"y": "velocity", "x": "displacement"}
 

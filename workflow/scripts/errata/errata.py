@@ -1,10 +1,10 @@
 """Every erratum of the paper: printed, mended and reference values."""
 
-from reproduction import artifact
 from reproduction.errata.entries import ERRATA
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
-from reproduction.printed import numbered
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
+from reproduction.rendering.printed import numbered
 
 TEXTS = (
     ("place", "where in the paper"),

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from reproduction.tables import scientific, typeset
+from reproduction.rendering.tables import scientific, typeset
 
 RELATION = {"equal": "", "at least": r"\geq ", "at most": r"\leq "}
 WIDTHS = ("auto", "1.2fr", "2fr", "2fr", "1.8fr", *["auto"] * 5)

@@ -4,10 +4,10 @@ import numpy as np
 from scipy.special import ndtri
 
 from nonsmooth.crossing.counting import proportion
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
-from reproduction.tables import sorted_by
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
+from reproduction.rendering.tables import sorted_by
 
 OUTSIDE = 1e-6  # probability that a simultaneous band misses its curve by chance
 RARELY = 1e-3  # probability that the 95 % bands contain the curves too rarely by chance

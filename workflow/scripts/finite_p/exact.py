@@ -4,8 +4,8 @@ import numpy as np
 
 from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def exact(scene, threshold, horizon, outputs, first_time, tolerance, p):

@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 
-from reproduction.plots import BLACK, BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
+from reproduction.rendering.plots import BLACK, BLUE, GREEN, ORANGE, TEXT_WIDTH, draw
 
 LOOKS = {
     "asymptotic": (ORANGE, "o", "-"),

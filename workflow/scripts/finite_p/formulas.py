@@ -4,9 +4,9 @@ import numpy as np
 
 from nonsmooth.boundary_layer.symmetric_line import layer_constants
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
 from reproduction.finite_p import FORMULAS, check_stated_errors, powers_of_p, probabilities
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 CONSTANTS = {
     "diffusion": "D = gamma^2 / 2",

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from reproduction.tables import scientific, typeset
+from reproduction.rendering.tables import scientific, typeset
 
 
 def comparison(formulas, monte_carlo, horizon):

@@ -10,8 +10,8 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import by_formulas
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.sampled_gamma2 import gamma2_bias, slopes
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 DESCRIPTIONS = {
     "gamma2": "gamma^2, asymptotic variance of int_0^t g",

@@ -2,8 +2,8 @@
 
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def solve(scene, tolerance):

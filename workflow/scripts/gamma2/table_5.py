@@ -4,7 +4,7 @@ import pandas as pd
 
 from nonsmooth.scenes.scene import Scene
 from reproduction.gamma2 import compared
-from reproduction.tables import described, typeset
+from reproduction.rendering.tables import described, typeset
 
 
 def two_methods(solved, sampled, names, scenes):

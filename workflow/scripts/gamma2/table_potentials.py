@@ -5,7 +5,7 @@ import sympy
 
 from nonsmooth.scenes.scene import by_formulas
 from reproduction.gamma2 import compared
-from reproduction.tables import symbol, typeset
+from reproduction.rendering.tables import symbol, typeset
 
 SAMPLED = {"gamma2": "monte_carlo", "gamma2_error": "monte_carlo_error"}
 DIGITS = 2  # of the correlation time

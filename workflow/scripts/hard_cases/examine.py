@@ -2,11 +2,11 @@
 
 import math
 
-from reproduction import artifact
 from reproduction.errors import CheckError
 from reproduction.hard_cases.cases import CASES
 from reproduction.hard_cases.record import DEVIATIONS, REFUSED, WRONG, examine
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def judge(paths):

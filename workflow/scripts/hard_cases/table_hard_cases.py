@@ -4,7 +4,7 @@ import math
 
 import pandas as pd
 
-from reproduction.tables import scientific, typeset
+from reproduction.rendering.tables import scientific, typeset
 
 WIDTHS = ("1.2fr", "1fr", "auto", "auto", "auto", "2.6fr")
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 from reproduction.limit_theorem import (
     allowed_distance,
     distance_to_limit,

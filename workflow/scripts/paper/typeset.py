@@ -6,8 +6,8 @@ from pathlib import Path
 import typst
 
 from reproduction.errors import ArtifactError
-from reproduction.files import whole
-from reproduction.jobs import job
+from reproduction.jobs.files import whole
+from reproduction.jobs.job import job
 
 
 def compile_paper(template, results, output):

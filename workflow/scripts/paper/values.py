@@ -2,8 +2,8 @@
 
 import json
 
-from reproduction.files import whole
-from reproduction.jobs import inputs, job
+from reproduction.jobs.files import whole
+from reproduction.jobs.job import inputs, job
 from reproduction.paper_values import paper_values
 
 if __name__ == "__main__":

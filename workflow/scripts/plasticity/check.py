@@ -4,9 +4,9 @@ import numpy as np
 from scipy.special import ndtri
 
 from nonsmooth.crossing.brownian import asymptotic_crossing
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 DESCRIPTIONS = {

@@ -6,8 +6,8 @@ import numpy as np
 
 from nonsmooth.crossing.counting import DESCRIPTIONS
 from nonsmooth.crossing.probability import crossing_probability
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 from reproduction.plasticity import yielding_oscillator
 
 

@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 
 from reproduction.plasticity import relaxation_time
-from reproduction.plots import BLUE, GREEN, ORANGE, TEXT_WIDTH, draw, from_zero
+from reproduction.rendering.plots import BLUE, GREEN, ORANGE, TEXT_WIDTH, draw, from_zero
 
 COLORS = [GREEN, BLUE, ORANGE]
 LOOKS = {

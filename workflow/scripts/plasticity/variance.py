@@ -4,8 +4,8 @@ from functools import partial
 
 from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 from reproduction.plasticity import yielding_oscillator
 
 

@@ -7,7 +7,7 @@ from matplotlib.ticker import NullFormatter
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
-from reproduction.plots import BLUE, ORANGE, TEXT_WIDTH, draw
+from reproduction.rendering.plots import BLUE, ORANGE, TEXT_WIDTH, draw
 
 LOOKS = {
     "pathwise": (BLUE, "o", "-", r"paths, $E \sup |\cdot|$"),

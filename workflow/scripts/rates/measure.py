@@ -6,8 +6,8 @@ import numpy as np
 
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 from reproduction.rates import (
     contact_time,
     gamma2_difference,

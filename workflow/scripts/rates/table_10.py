@@ -4,7 +4,7 @@ import pandas as pd
 
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.scene import Scene
-from reproduction.tables import scientific, typeset
+from reproduction.rendering.tables import scientific, typeset
 
 
 def exponents(rates, scenes):

@@ -7,7 +7,7 @@ from matplotlib.patches import Rectangle
 from nonsmooth.scenes.models.elasto_plastic import ELASTO_PLASTIC
 from nonsmooth.scenes.models.friction import FRICTION
 from nonsmooth.scenes.models.obstacle import OBSTACLE
-from reproduction.plots import TEXT_WIDTH, draw
+from reproduction.rendering.plots import TEXT_WIDTH, draw
 
 LINE = {"color": "black", "linewidth": 1.1, "solid_capstyle": "butt"}
 

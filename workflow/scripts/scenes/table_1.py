@@ -5,7 +5,7 @@ import sympy
 
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.symbols import x, y
-from reproduction.tables import typeset
+from reproduction.rendering.tables import typeset
 
 
 def penalties():

@@ -5,7 +5,7 @@ import sympy
 
 from nonsmooth.scenes import equations
 from nonsmooth.scenes.noises import NOISES
-from reproduction.tables import typeset
+from reproduction.rendering.tables import typeset
 
 
 def state_equations():

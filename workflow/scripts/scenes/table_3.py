@@ -6,7 +6,7 @@ import sympy
 from nonsmooth.scenes.equations import U
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.symbols import x
-from reproduction.tables import typeset
+from reproduction.rendering.tables import typeset
 
 
 def forces():

@@ -12,7 +12,7 @@ from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
-from reproduction.jobs import produce
+from reproduction.jobs.job import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
 SIMULATED, SOLVED = "Monte Carlo, Strang", "spectral"

@@ -13,7 +13,7 @@ from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from reproduction.jobs import produce
+from reproduction.jobs.job import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
 SECTOR = 0.3  # half angle of the contour about the negative axis

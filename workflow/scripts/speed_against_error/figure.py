@@ -5,7 +5,7 @@ from itertools import cycle
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reproduction.plots import BLACK, BLUE, GREEN, ORANGE, SKY, TEXT_WIDTH, draw
+from reproduction.rendering.plots import BLACK, BLUE, GREEN, ORANGE, SKY, TEXT_WIDTH, draw
 from reproduction.speed_against_error.work_precision import front
 
 LOOKS = [

@@ -7,7 +7,7 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.sampled_gamma2 import slopes
-from reproduction.jobs import produce
+from reproduction.jobs.job import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
 

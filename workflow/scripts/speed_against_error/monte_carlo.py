@@ -12,7 +12,7 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.variance import variance
-from reproduction.jobs import produce
+from reproduction.jobs.job import produce
 from reproduction.speed_against_error.work_precision import Case, measured, peer, timed
 
 PEERS = Path("benchmarks/peers/simulations.py")

@@ -4,7 +4,7 @@ from functools import lru_cache
 from itertools import product
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.jobs import produce
+from reproduction.jobs.job import produce
 from reproduction.speed_against_error.pathwise import BrownianPaths
 from reproduction.speed_against_error.work_precision import Case, measured
 

@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 
 from nonsmooth.line import eigenfunctions, finite_differences
 from nonsmooth.scenes.scene import Scene
-from reproduction.jobs import produce
+from reproduction.jobs.job import produce
 from reproduction.speed_against_error.work_precision import Case, measured, peer, timed, unseeded
 
 PEERS = "benchmarks/peers"

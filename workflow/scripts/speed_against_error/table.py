@@ -2,8 +2,8 @@
 
 import pandas as pd
 
+from reproduction.rendering.tables import scientific, typeset
 from reproduction.speed_against_error.work_precision import exponent, front
-from reproduction.tables import scientific, typeset
 
 
 def tabulate(measurements, x, y):

@@ -12,8 +12,8 @@ from nonsmooth.crossing.counting import (
 )
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, seed, threads):

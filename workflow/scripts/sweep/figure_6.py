@@ -3,7 +3,7 @@
 from itertools import cycle
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.plots import LOOKS, ORANGE, draw, scene_panels
+from reproduction.rendering.plots import LOOKS, ORANGE, draw, scene_panels
 
 
 def sweep(crossing, limit, scenes, p):

@@ -3,9 +3,9 @@
 import numpy as np
 
 from nonsmooth.crossing.brownian import asymptotic_crossing
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 ALLOWED = 5.0  # standard errors; chance exceeds them with a probability of 6e-7
 

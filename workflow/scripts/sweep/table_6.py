@@ -3,7 +3,7 @@
 import pandas as pd
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.tables import described, typeset
+from reproduction.rendering.tables import described, typeset
 
 
 def sweep(variance, crossing, limit, scenes, p):

@@ -6,8 +6,8 @@ from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.sampled_gamma2 import gamma2_bias, slopes
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def variance(scene, times, step, paths, halving_paths, seed, threads):

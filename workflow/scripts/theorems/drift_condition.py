@@ -8,9 +8,9 @@ from nonsmooth.errors import AssumptionWarning
 from nonsmooth.scenes.noises import NOISES, Langevin
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 MARGINS = {
     "drift": "1 - sup(A_n V_n + epsilon V_n) / C",

@@ -4,9 +4,9 @@ from nonsmooth.scenes.relaxation import rate_at_infinity
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.spectral_gap import spectral_gap
 from nonsmooth.theory.ergodicity import decay_rate, poisson_bound
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def measure(scenes, tolerance, step, enlargement):

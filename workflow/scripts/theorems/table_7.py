@@ -5,8 +5,8 @@ from sympy import latex
 
 from nonsmooth.scenes.formulas import parse
 from nonsmooth.scenes.symbols import eta
-from reproduction.printed import numbered
-from reproduction.tables import scientific, typeset
+from reproduction.rendering.printed import numbered
+from reproduction.rendering.tables import scientific, typeset
 
 COLUMNS = {
     "drift": r"$1 - \sup / C$",

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.tables import described, typeset
+from reproduction.rendering.tables import described, typeset
 
 
 def ergodic(ergodicity, scenes):

@@ -5,8 +5,8 @@ import xarray as xr
 
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def same_noise(model, potential, damping, n, horizon, step, outputs, seed, path):

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.special import ndtri
 
-from reproduction import artifact
 from reproduction.errors import CheckError
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although nothing is wrong
 

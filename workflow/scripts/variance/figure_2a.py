@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 
-from reproduction.plots import BLACK, BLUE, ORANGE, SKY, TEXT_WIDTH, draw
+from reproduction.rendering.plots import BLACK, BLUE, ORANGE, SKY, TEXT_WIDTH, draw
 
 
 def three_methods(spectral, finite_difference, monte_carlo, check):

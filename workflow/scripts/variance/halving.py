@@ -8,8 +8,8 @@ from nonsmooth.paths.moments import step_bias
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def halving(scene, first_time, horizon, points, step, paths, seed, threads):

@@ -3,8 +3,8 @@
 from functools import reduce
 
 from nonsmooth.paths.moments import moments
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def merge(shards, halving):

@@ -6,8 +6,8 @@ from nonsmooth.paths import time_grids
 from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
-from reproduction import artifact
-from reproduction.jobs import produce
+from reproduction.jobs import artifact
+from reproduction.jobs.job import produce
 
 
 def shard(scene, first_time, horizon, points, step, part, seed, threads):

@@ -12,8 +12,8 @@ import tylax
 import xarray as xr
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.files import whole
-from reproduction.jobs import Task, inputs, job
+from reproduction.jobs.files import whole
+from reproduction.jobs.job import Task, inputs, job
 
 
 def typeset(build: Callable, task: Task) -> None:

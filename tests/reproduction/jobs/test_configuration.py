@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from nonsmooth.errors import NonsmoothError
-from reproduction.configuration import validate
+from reproduction.jobs.configuration import validate
 from support import ROOT
 from workflow.experiment import SCHEMA, check, label, shards
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reproduction import artifact
 from reproduction.errors import ArtifactError
+from reproduction.jobs import artifact
 
 
 def example(values=(1.0, 2.0)):

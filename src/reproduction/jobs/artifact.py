@@ -9,7 +9,7 @@ import xarray as xr
 
 import nonsmooth
 from reproduction.errors import ArtifactError
-from reproduction.files import whole
+from reproduction.jobs.files import whole
 
 _MARK = "nonsmooth"  # the `source` attribute starts with it
 

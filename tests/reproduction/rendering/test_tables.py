@@ -3,7 +3,7 @@
 import pandas as pd
 import typst
 
-from reproduction import tables
+from reproduction.rendering import tables
 
 
 def test_widths_of_columns():

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
-from reproduction.files import whole
-from reproduction.jobs import Task, inputs, job
+from reproduction.jobs.files import whole
+from reproduction.jobs.job import Task, inputs, job
 
 TEXT_WIDTH = 6.3  # inches
 # Wong's colour-blind-safe palette, ordered so that neighbours also differ in grey

@@ -10,7 +10,7 @@ from typing import Protocol
 import xarray as xr
 
 from nonsmooth.errors import NonsmoothError
-from reproduction import artifact
+from reproduction.jobs import artifact
 
 
 class Task(Protocol):

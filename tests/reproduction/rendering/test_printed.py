@@ -3,7 +3,7 @@
 import pytest
 
 from reproduction.errors import ArtifactError
-from reproduction.printed import numbered, printed_values
+from reproduction.rendering.printed import numbered, printed_values
 
 
 def test_values_of_table_4():

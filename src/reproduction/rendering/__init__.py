@@ -1,0 +1,7 @@
+"""What the paper shows: figures and tables, and what it prints itself.
+
+`plots`, `tables`
+    `draw` and the style of the figures; `typeset` and how numbers are spelled.
+`printed`
+    `printed_values`, `numbered`: what the paper prints, and how it numbers its equations.
+"""
