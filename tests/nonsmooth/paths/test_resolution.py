@@ -1,0 +1,31 @@
+"""The step and the number of paths that a tolerance asks for."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import nonsmooth as ns
+from nonsmooth.errors import ToleranceError
+from nonsmooth.paths.simulation import simulate
+from references import FALSE_ALARM, FRICTION
+
+
+def test_tolerance_is_met():
+    """The variance within tol of the reference: error bars and bias included, step chosen."""
+    limit = ns.Scene("friction", n=np.inf)
+    for scene, scheme in ((FRICTION, "strang"), (limit, "strang"), (limit, "dry_friction")):
+        run = simulate(scene, 10.0, tol=0.02, times=[10.0], seed=4, scheme=scheme)
+        exact = float(ns.variance(scene, [10.0])["v"][0])
+        z = stats.norm.isf(FALSE_ALARM / 2)
+        slack = abs(run["variance_bias"]) + z * np.hypot(
+            run["variance_error"], run["variance_bias_error"]
+        )
+        assert abs(run["variance"] - exact)[0] < slack[0]
+        assert 2 * run["variance_error"][0] < 0.02 * exact
+        assert abs(run["variance_bias"])[0] < 0.02 * exact
+
+
+def test_what_would_take_for_ever_is_refused():
+    """One line with a tolerance that would not."""
+    with pytest.raises(ToleranceError, match="use tol >="):
+        simulate(ns.Scene("friction", n=100), 10.0, tol=1e-9)
