@@ -1,11 +1,13 @@
 """Crossing, survival and first passage of Brownian motion against fifty digits."""
 
+import math
+
 import mpmath
 import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.crossing.brownian import asymptotic_crossing, brownian_exit
+from nonsmooth.crossing.brownian import asymptotic_crossing, brownian_exit, brownian_exit_density
 from nonsmooth.errors import SceneError
 from references import GAMMA2, W_STAR
 
@@ -169,3 +171,18 @@ def test_exits_by_either_level_add_up(lower):
     assert np.all(np.diff(above) >= -1e-15)
     if np.isfinite(lower):
         assert above[-1] == pytest.approx(lower / (lower - 1.3), rel=1e-14)
+
+
+def test_what_is_not_a_number_stays_that():
+    """A threshold or a horizon that is not a number gives none."""
+    assert math.isnan(ns.brownian_crossing(1.0, math.nan))
+    assert math.isnan(ns.brownian_crossing(math.nan, 1.0))
+
+
+@pytest.mark.parametrize(("b", "lower"), [(0.5, -0.7), (2.0, -0.1), (0.5, -np.inf)])
+def test_exit_density(b, lower):
+    """The density is the slope of the probability, on either side of T = L^2."""
+    T = np.array([0.2, 1.0, 1.4, 4.5, 6.0])
+    step = 1e-5 * T
+    slope = (brownian_exit(b, T + step, lower) - brownian_exit(b, T - step, lower)) / (2 * step)
+    assert brownian_exit_density(b, T, lower) == pytest.approx(slope, rel=1e-6, abs=1e-9)

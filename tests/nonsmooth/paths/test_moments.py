@@ -85,3 +85,12 @@ def test_friction_force_balances_the_forcing(n):
     slope = np.diff(sample["variance"])[0] / 40
     allowed = stats.norm.isf(FALSE_ALARM / 2) * np.hypot(*sample["variance_error"]) / 40
     assert abs(slope - estimate.value) < allowed + 0.01
+
+
+def test_bias_of_a_variance_beside_a_large_mean():
+    """A step that shifts the mean, here by 10, has no bias in the variance."""
+    half = 1000 + np.random.default_rng(1).standard_normal(500)
+    vector = np.stack([np.ones(500), np.full(500, 10.0), (half + 10) ** 2 - half**2, half])
+    bias, error = step_bias((vector @ vector.T)[None], 1.0)
+    assert abs(bias[0]) < 1e-8  # rounding of squares of 1e6
+    assert error[0] < 1e-3

@@ -125,3 +125,20 @@ def test_what_is_warned_of_is_said_once():
     assert (moved.n, moved.start) == (5.0, {"y": 1.0})
     with pytest.raises(SceneError, match="n > 0"):
         scene.with_n(-1)
+
+
+@pytest.mark.parametrize(
+    ("observable", "warned"),
+    [("y", False), ("sign(y)", False), ("y**4", True), ("exp(y)", True), ("1/y", True)],
+)
+def test_warns_where_g_is_above_the_lyapunov_function(observable, warned):
+    """The theorems ask for g^2 <= V: x^2 exceeds this for a quadratic U, not for a quartic one."""
+    for g, U, expected in (
+        (observable, "x**2/2", warned),
+        ("x**2", "x**2/2", True),
+        ("x**2", "x**4", False),
+    ):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            ns.Scene("friction", potential=U, observable=g)
+        assert bool(caught) == expected

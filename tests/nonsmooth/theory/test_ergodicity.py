@@ -77,21 +77,6 @@ def test_far_out_friction_is_not_felt():
     assert ns.spectral_gap(scene).value > 2.5  # which a start from afar does not change
 
 
-def test_rate_at_infinity_of_walls():
-    """Far out, walls are springs, x' = y - n x where they yield, and friction is nothing."""
-    cases = {
-        "elasto_plastic": [[-1.0, -1.0], [1.0, -20.0]],
-        "obstacle": [[-1.0, -21.0], [1.0, 0.0]],
-    }
-    for model, drift in cases.items():
-        scene = ns.Scene(model, n=20, potential="x**2/2", observable="x")
-        exact = -2 * np.linalg.eigvals(drift).real.max()
-        found = rate_at_infinity(scene)
-        assert abs(found.value - exact) <= found.error < 1e-5
-    with pytest.raises(SceneError, match="grow quadratically"):
-        rate_at_infinity(ns.Scene("friction", ns.Langevin("eta**4/4")))
-
-
 @pytest.mark.parametrize(("damping", "n"), [(1.0, 3.0), (1.0, 100.0), (0.2, 30.0), (4.0, 30.0)])
 def test_poisson_bound_under_friction(damping, n):
     """By quadrature of u', on so many points that its own error is some 1e-9."""

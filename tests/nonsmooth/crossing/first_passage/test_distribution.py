@@ -1,6 +1,8 @@
 """The deterministic distribution of the first passage: which scenes have one."""
 
+import numpy as np
 import pytest
+from scipy.special import ndtr
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
@@ -19,3 +21,43 @@ def test_other_scenes_are_told_to_sample():
         ns.crossing_probability(
             ns.Scene("friction", "hamiltonian"), 0.6, [1.0], method="deterministic", tol=1e-7
         )
+
+
+def far(start, **parameters):
+    """Dry friction that starts far out."""
+    return ns.Scene("friction", start={"y": start}, **parameters)
+
+
+def deterministic(scene, threshold, horizons, tol=1e-7):
+    """Values of the deterministic method."""
+    return ns.crossing_probability(scene, threshold, horizons, method="deterministic", tol=tol)
+
+
+def test_crossings_in_flight():
+    """A start of depth 2600: a step, as wide as the normal law says; mirrored, the same."""
+    horizons = [0.011, 0.012, 0.0121, 0.1, 100.0]
+    found = deterministic(far(50.0), 0.6, horizons)
+    # int y = 50 t - 51 t^2 / 2 + int W, but for t^3
+    t = np.array(horizons[:3])
+    rough = ndtr((50 * t - 25.5 * t**2 + 8.5 * t**3 - 0.6) / (t**1.5 / np.sqrt(3)))
+    assert np.allclose(found.probability[:3], rough, rtol=0.05, atol=1e-7)
+    assert np.all(found.probability[3:] == 1)
+    assert np.all(found.probability_error <= 1e-7)
+    mirrored = deterministic(far(-50.0), 0.6, horizons)
+    assert np.allclose(mirrored.probability, found.probability, rtol=0, atol=1e-14)
+
+
+def test_monte_carlo_from_afar():
+    """The wall is next to where the flight ends; 4.5 standard errors: false alarm 7e-6."""
+    found = deterministic(far(5.0), 2.0, [0.5], tol=1e-5)
+    sample = ns.crossing_probability(far(5.0), 2.0, [0.5], paths=40_000, step=0.005, seed=3)
+    bias = np.abs(sample.step_bias) + sample.step_bias_error
+    gap = np.abs(sample.probability - found.probability)
+    assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
+    assert found.probability_error[0] <= 1e-5
+
+
+def test_refused_where_g_changes_its_sign():
+    """With the cure."""
+    with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
+        deterministic(far(8.0, observable="y*(y**2 - 49)"), 0.6, [1.0])

@@ -1,0 +1,31 @@
+"""The random clock of the corrected formulas."""
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.integrate import quad
+
+from nonsmooth.crossing.random_clock import averaged
+
+
+class TestRandomClock:
+    """Averages over the maximum of s + sqrt(2 b) W(s) for s up to t."""
+
+    @pytest.mark.parametrize("spread", [0.01, 1.0, 30.0])
+    def test_mean(self, spread):
+        """Against the inverse Gaussian law of the times at which it reaches a level."""
+
+        def slope(level, t):
+            """Of exp(-1/level), times the law of the time, of mean level and variance 2 b level."""
+            law = stats.invgauss(2 * spread / level, scale=level**2 / (2 * spread))
+            return np.exp(-1 / level) / level**2 * law.cdf(t)
+
+        for t in (0.3, 2.0):
+            expected = quad(slope, 0, 300, args=(t,), points=[0.1, 1, 10], limit=200)[0]
+            found = averaged(lambda s: np.exp(-1 / s), np.array([t]), spread)
+            assert found[0] == pytest.approx(expected, abs=3e-7)
+
+    def test_no_spread(self):
+        """The clock is the time, and nothing has passed before 0."""
+        found = averaged(lambda s: s**2, np.array([-1.0, 0.0, 3.0]), 0.0)
+        assert found.tolist() == [0.0, 0.0, 9.0]

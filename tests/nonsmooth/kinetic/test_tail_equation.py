@@ -1,0 +1,68 @@
+"""The equation of the first passage in the tails, marched down to the bulk."""
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.kinetic.case_modes import first_passage, waves
+from nonsmooth.kinetic.ordinates_line import ordinates
+from nonsmooth.kinetic.tail_descent import tail
+from nonsmooth.kinetic.tail_equation import TailEquation, radau, reach
+
+
+def far(start, **parameters):
+    """Dry friction that starts far out."""
+    return ns.Scene("friction", start={"y": start}, **parameters)
+
+
+def test_radau_is_exact_to_its_order():
+    """The last stage integrates polynomials of degree 8, the others of degree 4."""
+    nodes, matrix = radau(5)
+    for k in range(9):
+        exact = nodes ** (k + 1) / (k + 1)
+        stages = slice(None) if k < 5 else slice(-1, None)
+        assert np.allclose(matrix @ nodes**k, exact, rtol=0, atol=1e-13) or k >= 5
+        assert np.allclose((matrix @ nodes**k)[stages], exact[stages], rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("threshold", [(-1.0, 1.0), (-1.0, np.inf), (-np.inf, 1.0)])
+def test_march_against_modes(threshold):
+    """At a depth of 15, where the modes have lost some digits: 1e-8 is left."""
+    scene, z = far(3.0), np.array([0.5, 5.0, 3 + 5j, 0.5 + 20j])
+    whole = ordinates(scene, 13, 0.1)
+    expected = [first_passage(whole, w, *threshold) for w in z]
+    out = tail(scene)
+    bulk = ordinates(far(out.level), 11, 0.1)
+    marched = TailEquation(out, out.law(0.0), *threshold, 11)
+    found = [marched.mean(w, *waves(bulk, w, *threshold)) for w in z]
+    assert np.max(np.abs(np.subtract(found, expected))) < 2e-8
+
+
+def test_mean_over_the_normal_law():
+    """From the end of the descent, times exp(-z t), it is the transform from the start."""
+    out, z, threshold = tail(far(5.0)), 0.5 + 2j, (-3.0, 3.0)
+    bulk = ordinates(far(out.level), 13, 0.1)
+    at_once, later = (
+        TailEquation(out, out.law(time), *threshold, 13).mean(z, *waves(bulk, z, *threshold))
+        for time in (0.0, out.descent)
+    )
+    assert out.law(out.descent).passed(3.0) < 1e-15
+    assert abs(at_once - np.exp(-z * out.descent) * later) < 1e-9  # what `NormalLaw` leaves out
+
+
+def test_the_longest_way():
+    """Friction alone stops y: int y <= sup over the way down, by Chernoff above the mean way."""
+    out = tail(far(10.0))
+    fall = np.log(11.0 / (1 + out.level))
+    assert 10.0 - out.level - fall < reach(out) < 40.0
+    assert reach(tail(far(-10.0, observable="y + abs(y)"))) == 0.0
+
+
+def test_g_that_vanishes_in_the_tail():
+    """Nothing moves before the level is reached; the modes are those of a depth of 15."""
+    scene, z = far(-3.0, observable="y + abs(y)"), 0.5 + 1j
+    out = tail(scene)
+    bulk = ordinates(far(-out.level, observable="y + abs(y)"), 11, 0.1)
+    marched = TailEquation(out, out.law(0.0), -0.2, 0.2, 11)
+    found = marched.mean(z, *waves(bulk, z, -0.2, 0.2))
+    assert abs(found - first_passage(ordinates(scene, 13, 0.1), z, -0.2, 0.2)) < 2e-8
