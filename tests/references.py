@@ -31,3 +31,8 @@ KAPPA = 0.2911259630
 # rounded: docs/methods/first_passage.md
 W = {1: 0.1606775, 10: 0.3674251, 100: 0.4595991, 1000: 0.4902812}
 W_STAR = 0.5045888
+
+
+def far(start, **parameters):
+    """Dry friction that starts far out."""
+    return ns.Scene("friction", start={"y": start}, **parameters)

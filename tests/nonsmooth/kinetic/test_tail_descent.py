@@ -5,18 +5,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.special import ndtr
 
-import nonsmooth as ns
 from nonsmooth.kinetic.tail_descent import NormalLaw, tail
-
-
-def far(start, **parameters):
-    """Dry friction that starts far out."""
-    return ns.Scene("friction", start={"y": start}, **parameters)
-
-
-def deterministic(scene, threshold, horizons, tol=1e-7):
-    """Values of the deterministic method."""
-    return ns.crossing_probability(scene, threshold, horizons, method="deterministic", tol=tol)
+from references import far
 
 
 @pytest.mark.parametrize("time", [1e-3, 9e-3, 1.1e-2, 0.3])

@@ -3,16 +3,11 @@
 import numpy as np
 import pytest
 
-import nonsmooth as ns
 from nonsmooth.kinetic.case_modes import first_passage, waves
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.tail_descent import tail
 from nonsmooth.kinetic.tail_equation import TailEquation, radau, reach
-
-
-def far(start, **parameters):
-    """Dry friction that starts far out."""
-    return ns.Scene("friction", start={"y": start}, **parameters)
+from references import far
 
 
 def test_radau_is_exact_to_its_order():

@@ -8,7 +8,7 @@ import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes import equations
 from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
-from nonsmooth.theory import drift_bounds, lyapunov
+from nonsmooth.theory import lyapunov
 from nonsmooth.theory.lyapunov import C_V, C_b, K, M, delta, epsilon, xi
 
 U, slope = equations.U(x), sympy.Derivative(equations.U(x), x)
@@ -99,13 +99,6 @@ def test_constants_satisfy_the_boxed_inequalities(noise, potential):
         assert c.noise_weight > 8 / c.restoring * need
     if noise == "hamiltonian":
         assert c.noise_weight > 4 / (c.restoring * (c.restoring - c.epsilon)) * need
-
-
-def test_bound_has_its_supremum():
-    """K + slope^2/(4 quadratic) for each variable, attained."""
-    bound = drift_bounds.Bound(3.0, {y: 2.0, x: 0.5}, {y: 4.0, x: 1.0})
-    at = {y: np.array([1.0]), x: np.array([-1.0])}
-    assert bound.evaluate(at)[0][0] == pytest.approx(bound.supremum) == pytest.approx(5.5)
 
 
 @pytest.mark.parametrize(

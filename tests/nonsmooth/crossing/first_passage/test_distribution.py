@@ -1,4 +1,4 @@
-"""The deterministic distribution of the first passage: which scenes have one."""
+"""The deterministic first passage: which scenes have one, and starts far away."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,12 @@ from scipy.special import ndtr
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
+from references import far
+
+
+def deterministic(scene, threshold, horizons, tol=1e-7):
+    """Values of the deterministic method."""
+    return ns.crossing_probability(scene, threshold, horizons, method="deterministic", tol=tol)
 
 
 def test_a_scene_of_four_variables_is_told_to_sample():
@@ -21,16 +27,6 @@ def test_other_scenes_are_told_to_sample():
         ns.crossing_probability(
             ns.Scene("friction", "hamiltonian"), 0.6, [1.0], method="deterministic", tol=1e-7
         )
-
-
-def far(start, **parameters):
-    """Dry friction that starts far out."""
-    return ns.Scene("friction", start={"y": start}, **parameters)
-
-
-def deterministic(scene, threshold, horizons, tol=1e-7):
-    """Values of the deterministic method."""
-    return ns.crossing_probability(scene, threshold, horizons, method="deterministic", tol=tol)
 
 
 def test_crossings_in_flight():
