@@ -1,4 +1,4 @@
-"""Shared fixtures: copies of the repository in which the workflow can run and be disturbed."""
+"""Fixtures: copies of the repository in which the workflow can run and be disturbed."""
 
 import runpy
 import shutil
@@ -6,6 +6,14 @@ import shutil
 import pytest
 
 from support import ROOT, Repository, copy_repository
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark as slow what runs the workflow."""
+    for item in items:
+        if {"repository", "smoke_run"} & set(item.fixturenames):
+            item.add_marker("slow")
 
 
 @pytest.fixture

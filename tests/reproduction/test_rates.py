@@ -32,7 +32,7 @@ def test_interval_covers():
 
 
 def test_too_few_differences():
-    """With the cure."""
+    """Differences within their errors give no slope; the message asks for more paths."""
     with pytest.raises(ToleranceError, match="take more paths"):
         slope(N, np.ones(5), [1.0, 1.0, 1.0, 0.1, 0.1])
 

@@ -74,6 +74,6 @@ def test_odd_g_on_the_whole_grid(monkeypatch):
 
 
 def test_needs_a_centred_g():
-    """The message has the mean."""
+    """A g with E g != 0 has no kappa; the message has the mean to subtract."""
     with pytest.raises(ns.NonsmoothError, match="subtract"):
         ns.extrapolation_length(ns.Scene("friction", observable="y + abs(y)/2"))

@@ -15,7 +15,7 @@ def test_order_follows_from_what_is_known():
 
 
 def test_distance():
-    """Constant by constant; what is not known stays unknown."""
+    """The distance is taken constant by constant; what is not known stays unknown."""
     found = FIRST.distance(LayerConstants(diffusion=1.5, kappa=(0.0, 1.0), u=0.5))
     assert found == LayerConstants(diffusion=0.5, kappa=(0.25, 3.0), u=0.0)
     assert found.dispersion is None

@@ -6,7 +6,7 @@ import nonsmooth as ns
 
 
 def test_both_sides_of_an_odd_g():
-    """They are the same."""
+    """An odd g has one extrapolation length for both sides."""
     lower, upper = (
         ns.extrapolation_length(ns.Scene("friction"), side=side) for side in ("lower", "upper")
     )
@@ -14,6 +14,6 @@ def test_both_sides_of_an_odd_g():
 
 
 def test_unknown_side():
-    """The message has the choices."""
+    """A side that is neither is refused; the message has the choices."""
     with pytest.raises(ns.NonsmoothError, match="choose 'lower' or 'upper'"):
         ns.extrapolation_length(ns.Scene("friction"), side="left")

@@ -54,13 +54,13 @@ def test_independent_prototype():
 
 @pytest.mark.parametrize("n", [1.0, 1e4, 1e6, np.inf])
 def test_diffusion_is_half_gamma2(n):
-    """D against the quadrature of gamma^2."""
+    """2 D is the gamma^2 of the quadrature within the stated error."""
     found, errors = layer_constants(FRICTION.with_n(n))
     gamma2 = ns.asymptotic_variance(FRICTION.with_n(n)).value
     assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
 
 
 def test_refuses_what_it_cannot():
-    """Colored noise has no such solver."""
+    """Colored noise is refused: it has a second state variable."""
     with pytest.raises(ns.NonsmoothError, match="white noise"):
         layer_constants(ns.Scene("friction", "langevin"))

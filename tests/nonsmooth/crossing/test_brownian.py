@@ -69,7 +69,7 @@ def assert_exact(b, T, lower):
 
 
 def test_two_equal_levels_on_a_grid():
-    """B and T from 1e-3 to 1e3, with the change of series, T = b^2, and its neighbours."""
+    """Relative accuracy for b and T from 1e-3 to 1e3, also where the series change, T = b^2."""
     b, T = (x.ravel() for x in np.meshgrid(np.logspace(-3, 3, 13), np.logspace(-3, 3, 13)))
     beside = np.array([0.3, 1.0, 7.0])
     b = np.concatenate([b, beside, beside, beside])
@@ -78,7 +78,7 @@ def test_two_equal_levels_on_a_grid():
 
 
 def test_unequal_and_single_levels_at_random():
-    """All of [1e-3, 1e3]^3; also a level 1e-12 from the start, and none on one side."""
+    """Relative accuracy on [1e-3, 1e3]^3, 1e-12 from the start, and with one level only."""
     rng = np.random.default_rng(0)
     b, T, lower = 10 ** rng.uniform(-3, 3, (3, 2000))
     lower[:300] = np.inf
@@ -113,7 +113,7 @@ def test_are_a_law_and_its_density():
 
 
 def test_broadcasts_and_mirrors():
-    """Levels along one axis, horizons along the other; -W crosses the mirrored levels."""
+    """Arguments broadcast, and -W crosses the mirrored levels with the same probability."""
     upper, T = np.array([[0.5], [np.inf]]), np.array([0.0, 0.1, 3.0])
     for function in FUNCTIONS:
         values = function(upper, T, lower=-2.0)
@@ -134,7 +134,7 @@ def test_broadcasts_and_mirrors():
     ],
 )
 def test_levels_on_the_wrong_side_are_refused(arguments, cure):
-    """The start is between the levels."""
+    """The start must be between the levels; the message says so."""
     for function in FUNCTIONS:
         with pytest.raises(SceneError, match=cure):
             function(*arguments)

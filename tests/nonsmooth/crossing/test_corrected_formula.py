@@ -46,7 +46,7 @@ class TestOrders:
         return np.log10(last / first)
 
     def test_plain(self):
-        """W_star(b / gamma, T)."""
+        """W_star(b / gamma, T) is off by p^-1/2."""
         assert self.slope(0.6, FRICTION, PLAIN) == pytest.approx(-0.5, abs=0.2)
 
     @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ class TestOrders:
         assert np.log10(changes[1] / changes[0]) / 2 == pytest.approx(-1.5, abs=0.1)
 
     def test_without_symmetry(self):
-        """Orders 1 and 2, a decade apart."""
+        """Orders 1 and 2 have errors p^-1 and p^-3/2 for a g that is not odd, too."""
         for formula, power in zip(ORDERS, (-1, -1.5), strict=False):
             first, last = (
                 errors(UNEQUAL, p, SKEWED_AND_STARTED, formula).max() for p in (200.0, 2000.0)
@@ -169,7 +169,10 @@ def test_orders_need_constants():
 
 
 def test_two_variables():
-    """Against Monte Carlo, where the plain formula is off by 0.1; 4.5 sigma, and O(1/p)."""
+    """With two variables Monte Carlo agrees, where the plain formula is off by 0.1.
+
+    Within 4.5 standard errors and the error O(1/p) of the formula.
+    """
     scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
     problem = scene, 0.6, [2.0], 100
     found = ns.crossing_probability(*problem, method="corrected")

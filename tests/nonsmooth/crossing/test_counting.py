@@ -42,7 +42,7 @@ def crossed(threshold, scene=FRICTION, p=10.0, paths=5_000):
 
 
 def test_levels_of_both_sides():
-    """A number is a pair of opposite levels; every path that leaves leaves by one of them."""
+    """A number stands for two opposite levels, and a path leaves by one of two levels or both."""
     assert np.array_equal(crossed((-0.6, 0.6)), crossed(0.6))
     for lower, upper in ((-0.6, 0.6), (-0.9, 0.4)):
         both, below, above = (

@@ -44,9 +44,9 @@ def langevin_growth(noise):
 
 @pytest.mark.parametrize("barrier", [0.5, 2.0, 8.0])
 def test_the_forcing_may_mix_slowly(barrier):
-    """Friction under eta in two wells: gamma^2 of all that resists is the forcing's own.
+    """Friction under an eta with two wells: what resists has the gamma^2 of the forcing.
 
-    With 8 kT it is 2e4; kT = 1/2.
+    It is 2e4 for a barrier of 8 kT; kT = 1/2.
     """
     depth = np.sqrt(2 * barrier)
     noise = ns.Langevin(f"eta**4/4 - {depth}*eta**2/2")
@@ -73,7 +73,7 @@ def test_rate_of_jumps_between_two_wells():
 
 
 def test_a_rate_that_is_out_of_reach_is_refused(monkeypatch):
-    """Thirty kT: one transition in 1e12; the message tells so."""
+    """A barrier of 30 kT, one transition in 1e12, is refused; the message says so."""
     monkeypatch.setattr(tuning, "TENSOR_GRIDS", replace(tuning.TENSOR_GRIDS, largest={2: 10_000}))
     scene = ns.Scene("obstacle", potential="x**2/2 + 15*exp(-4*x**2)", observable="x")
     with pytest.raises(ToleranceError, match=r"mixes slowly, g stays correlated for some \de\+"):

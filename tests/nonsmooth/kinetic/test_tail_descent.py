@@ -24,7 +24,7 @@ def test_law_of_the_flight(time):
 
 
 def test_points_of_a_law():
-    """Moments of a normal law cut off at a way."""
+    """The points of a normal law cut off at a way have its moments."""
     law = NormalLaw(np.array([3.0, 1.0]), np.array([[0.25, 0.04], [0.04, 0.01]]))
     velocities, ways, weights = law.points(1.05)
     passed = ndtr(-0.5)

@@ -12,7 +12,7 @@ from references import GAMMA2, GAMMA2_LIMIT
 
 @pytest.mark.parametrize(("n", "value"), [(100, GAMMA2), (np.inf, GAMMA2_LIMIT)])
 def test_published_values(n, value):
-    """Two values known to fifteen digits."""
+    """The published values, of fifteen digits, are met to rounding."""
     assert friction_variance(n)[0] == pytest.approx(value, abs=2e-15)
 
 

@@ -19,7 +19,7 @@ def reference():
 
 
 def test_other_starting_points():
-    """A node by the spectral elements within the error bound; between nodes it is refused."""
+    """A start on a node is right within the stated error; between nodes it is refused."""
     scene = ns.Scene("friction", n=5, start={"y": 1.0})
     w, v, w_error, v_error = finite_differences.moments_with_error(scene, [2.0], 6.0, 601, 0.01)
     exact = eigenfunctions.moments(scene, [2.0], 12)
@@ -55,7 +55,7 @@ def test_second_order_in_space(reference):
 @pytest.mark.parametrize("n", [2, 37.0, 100, 1000])
 @pytest.mark.parametrize(("nodes", "time_step"), [(401, 0.02), (1201, 0.005)])
 def test_stated_error_covers_the_true_one(n, nodes, time_step):
-    """Also where 1/n falls between two nodes."""
+    """The stated error holds also where 1/n falls between two nodes."""
     scene = ns.Scene("friction", n=n)
     exact = ns.variance(scene, TAU)
     w, v, w_error, v_error = finite_differences.moments_with_error(
@@ -66,7 +66,7 @@ def test_stated_error_covers_the_true_one(n, nodes, time_step):
 
 
 def test_intensity_of_the_noise_enters_squared(reference):
-    """Sigma = 2: against spectral elements, within the stated error."""
+    """The v of sigma = 2 is that of the spectral elements within the stated error."""
     scene = ns.Scene("friction", noise=ns.White(2.0), n=10)
     exact = ns.variance(scene, TAU)["v"].values
     _, v, _, error = finite_differences.moments_with_error(scene, TAU, 9.0, 1801, 0.01)

@@ -173,7 +173,7 @@ def test_honest_on_random_parameters():
 @pytest.mark.parametrize("n", [1, 10, 1e3, 1e6, np.inf])
 @pytest.mark.parametrize("damping", [1e-3, 1.0, 1e3])
 def test_closed_form(n, damping):
-    """The corners of the range of n and C_b."""
+    """The closed form and the quadrature agree for extreme n and C_b."""
     value, error = quadrature.asymptotic_variance(ns.Scene("friction", n=n, damping=damping))
     exact, own = friction_variance(n, damping)
     assert abs(value - exact) <= error + own
@@ -201,7 +201,7 @@ NASTY = [
 
 @pytest.mark.parametrize(("parameters", "g", "kinks"), NASTY, ids=lambda p: str(p)[:40])
 def test_against_many_digits(parameters, g, kinks):
-    """60 digits inside, 20 outside."""
+    """Value, mean and errors against 60 digits inside, 20 outside."""
     scene = ns.Scene("friction", **parameters)
     with mp.workdps(60):
         exact = Reference(scene, g, kinks).variance()
@@ -303,13 +303,13 @@ def test_cancelling_formula_is_noticed():
 
 @pytest.mark.parametrize("observable", ["exp(0.6*y**2)", "exp(exp(y))", "sqrt(y)"])
 def test_what_has_no_answer_is_refused(observable):
-    """Not square-integrable, not finite, not real."""
+    """A g that is not square-integrable, finite and real is refused."""
     with pytest.raises(SceneError, match="choose one"):
         quadrature.asymptotic_variance(ns.Scene("friction", observable=observable))
 
 
 def test_refusals_of_scenes_and_poles():
-    """Another state; a pole, at which no refinement ends."""
+    """Two variables are refused, and so is a pole, at which no refinement ends."""
     with pytest.raises(SceneError, match="no deterministic solver"):
         quadrature.mean(ns.Scene("obstacle"))
     with pytest.raises(ToleranceError, match="loosen tol"):
@@ -319,7 +319,7 @@ def test_refusals_of_scenes_and_poles():
 @pytest.mark.parametrize("n", [1.0, 100.0, 1e6, np.inf])
 @pytest.mark.parametrize(("damping", "sigma"), [(1e-3, 10.0), (1.0, 1.0), (1e3, 0.1)])
 def test_density(n, damping, sigma):
-    """Values and normalisation against 40 digits."""
+    """The density and its integral agree with 40 digits within the stated error."""
     scene = ns.Scene("friction", White(sigma), n=n, damping=damping)
     with mp.workdps(40):
         reference = Reference(scene, lambda y: {(0, 0.0): 1})
@@ -334,7 +334,7 @@ def test_density(n, damping, sigma):
 
 @pytest.mark.parametrize("n", [1.0, 100.0, np.inf])
 def test_poisson_slope(n):
-    """Slope against many digits, also far out; even for odd g."""
+    """The slope agrees with many digits, also far out, and is even for odd g."""
     scene = ns.Scene("friction", n=n)
     y = np.array([0.0, 1e-3, 0.009, 0.5, 1.0, 3.0, 12.0, 20.0])
     slope = quadrature.poisson_slope(scene, y)

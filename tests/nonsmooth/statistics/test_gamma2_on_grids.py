@@ -67,7 +67,7 @@ def test_two_variables_linear(seed, square):
 
 @pytest.mark.parametrize("square", [False, True])
 def test_three_variables_linear(square):
-    """The iteration and the alternating directions, with and without the mirror symmetry."""
+    """The stated error of the alternating solver holds, with and without mirror symmetry."""
     parameters = random_linear(np.random.default_rng(3), "langevin")
     scene = ns.Scene(**parameters, observable="x**2" if square else "x")
     found = ns.asymptotic_variance(scene, tol=2e-2, method="deterministic")
@@ -102,7 +102,7 @@ def test_plastic_strain_has_the_growth_rate_of_the_displacement():
 
 
 def test_published_value_of_the_obstacle():
-    """Within the stated error, and the rounding of the published digits."""
+    """gamma^2 is the published one within its error and the rounding of the digits."""
     found = ns.asymptotic_variance(OBSTACLE)
     assert abs(found.value - GAMMA2_OBSTACLE) <= found.error + 5e-10
 

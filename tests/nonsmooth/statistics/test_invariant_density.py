@@ -23,7 +23,7 @@ PLASTIC = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
 
 
 def test_gibbs_density_is_the_grids():
-    """Within the difference of two grids and 1e-3 of the maximum."""
+    """Both agree within the difference of two grids and 1e-3 of the maximum."""
     grid = tensor_grid.fitted(OBSTACLE, tensor_grid.depth_for(1e-3), 1)
     points = {"y": np.linspace(-3, 3, 61), "x": np.linspace(-1.2, 1.2, 61)}
     coarse, fine = (
@@ -50,7 +50,7 @@ def test_closed_forms_have_mass_one_and_are_even(scene):
 
 @pytest.mark.parametrize("scene", [OBSTACLE, FRICTION])
 def test_closed_forms_are_the_public_densities(scene):
-    """With their errors, at any tolerance."""
+    """`invariant_density` returns the closed form with its error, where there is one."""
     found = invariant_density(scene)
     for name in scene.state:
         assert float(found[f"density_{name}_error"]) < 1e-8
@@ -60,7 +60,7 @@ def test_closed_forms_are_the_public_densities(scene):
 
 
 def test_averages_agree_with_a_simulation():
-    """Elasto-plastic: chi-square of both variables; each rejects by chance with 1e-5."""
+    """Chi-square test of both variables of the elasto-plastic model; false alarms 1e-5 each."""
     paths = 4000
     y, x, _ = paths_at(PLASTIC, [20], Sampling(0.01, paths, 3, threads=1))[-1]
     edges = {"y": np.linspace(-1.6, 1.6, 17), "x": np.linspace(-1.05, 1.05, 15)}
@@ -84,6 +84,6 @@ def test_error_holds_a_finer_solution():
 
 
 def test_the_nonsmooth_limit_is_refused():
-    """It has no density."""
+    """At n = inf part of the mass is on the walls, so that there is no density."""
     with pytest.raises(SceneError, match="finite n"):
         bin_averages(PLASTIC.with_n(math.inf), {"y": [-1, 1]}, 1e-2)

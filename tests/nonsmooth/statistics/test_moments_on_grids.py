@@ -194,7 +194,7 @@ def test_errors_hold_where_they_oscillate():
 
 
 def test_a_change_of_sign_of_the_error_is_not_taken_for_convergence():
-    """Raising x from level 3 to 4 changes v by 3e-5, from 4 to 5 by 1.3e-4."""
+    """One small change between levels is not the end: x from 3 to 4 3e-5, 4 to 5 1.3e-4."""
     potential = "x**2/2 + 0.3*cos(2*x)"
     scene = ns.Scene("obstacle", n=5.223, damping=1.954, potential=potential, observable="x")
     found = ns.variance(scene, [4.23], 3.6e-5, "deterministic")

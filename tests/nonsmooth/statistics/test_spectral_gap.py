@@ -27,7 +27,7 @@ def test_linear_oscillator(damping, stiffness):
 
 
 def test_friction_waits_for_the_noise():
-    """The forcing's own rate theta, where friction forgets faster than it."""
+    """The gap is the forcing's own rate theta where friction forgets faster."""
     found = ns.spectral_gap(ns.Scene("friction", ns.OrnsteinUhlenbeck(0.3), n=3), tol=1e-4)
     assert abs(found.value - 0.3) <= found.error
 

@@ -8,7 +8,7 @@ from nonsmooth.errors import ToleranceError
 
 
 def test_sampled_variance_meets_its_tolerance():
-    """Against the eigenfunctions, three standard errors and the bias; a false alarm in 100 runs."""
+    """The variance is within tol of that of the eigenfunctions; a false alarm in 100 runs."""
     scene, times = ns.Scene("friction"), np.array([1.0, 10.0])
     exact = ns.variance(scene, times)["v"]
     found = ns.variance(scene, times, 3e-3, "monte_carlo")
@@ -19,7 +19,7 @@ def test_sampled_variance_meets_its_tolerance():
 
 
 def test_rare_yielding_is_not_taken_for_rest():
-    """Few of the first paths yield, and those little; false alarms: 1e-3."""
+    """The variance is right though few of the first paths yield; false alarms 1e-3."""
     ground = ns.KanaiTajimi(2.0, 0.8)
     scene = ns.Scene("elasto_plastic", ground, 287.9, 0.9043, "x**2", "plastic_strain_rate")
     found = ns.variance(scene, [0.535, 1.07, 2.14, 4.28], 1.6e-6).isel(time=-1)

@@ -53,7 +53,7 @@ class TestMeasured:
         assert "error" not in measured("t", "s", [case([1.0] * 3)], 2)
 
     def test_refuses_what_is_unstable(self):
-        """By name."""
+        """A result that is not a number is refused with the method and its size."""
         with pytest.raises(CheckError, match="b at size 1 of a gives nan"):
             measured("t", "s", [case([1.0, np.nan, 1.0])], 2, {"a": (1.0, 0.0)})
 

@@ -15,14 +15,14 @@ def deterministic(scene, threshold, horizons, tol=1e-7):
 
 
 def test_a_scene_of_four_variables_is_told_to_sample():
-    """The message names the method."""
+    """Four variables have no deterministic method; the message names Monte Carlo."""
     scene = ns.Scene("elasto_plastic", "hamiltonian")
     with pytest.raises(SceneError, match="monte_carlo"):
         ns.crossing_probability(scene, 0.3, [1.0], 30, method="deterministic")
 
 
 def test_other_scenes_are_told_to_sample():
-    """The message names the method to use."""
+    """Three variables have no deterministic method; the message names Monte Carlo."""
     with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
         ns.crossing_probability(
             ns.Scene("friction", "hamiltonian"), 0.6, [1.0], method="deterministic", tol=1e-7
@@ -54,6 +54,6 @@ def test_monte_carlo_from_afar():
 
 
 def test_refused_where_g_changes_its_sign():
-    """With the cure."""
+    """A start where g changes its sign on the way to the bulk is told to sample."""
     with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
         deterministic(far(8.0, observable="y*(y**2 - 49)"), 0.6, [1.0])

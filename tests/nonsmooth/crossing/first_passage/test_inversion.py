@@ -8,7 +8,7 @@ from references import SKEWED
 
 
 def test_contours_end_where_crossings_are_negligible(monkeypatch):
-    """Earlier times get none, though without a good bound: at most one at each level."""
+    """Times before the first crossings get at most one contour at each level."""
     begins = []
     inverted = contours.inverted
 

@@ -40,14 +40,14 @@ class TestDeterministic:
 
     @pytest.mark.parametrize("threshold", [(-np.inf, 0.6), (-0.3, 0.6)])
     def test_monte_carlo_without_symmetry(self, threshold):
-        """As above; false alarms 1e-5."""
+        """The same for a g that is not odd; false alarms 1e-5."""
         sample = ns.crossing_probability(SKEWED, threshold, [2.0], 1, paths=40_000, step=0.02)
         bias = np.abs(sample.step_bias) + sample.step_bias_error
         gap = np.abs(sample.probability - exact(threshold, [2.0], 1, SKEWED).probability)
         assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
 
     def test_the_whole_grid_agrees_with_the_half(self, monkeypatch):
-        """Odd g, within both stated errors, with equal and unequal thresholds."""
+        """For odd g and any thresholds both grids agree within their stated errors."""
         thresholds = 0.6, (-0.3, 0.6)
         halves = [exact(threshold, [2.0], 1) for threshold in thresholds]
         monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
@@ -57,7 +57,7 @@ class TestDeterministic:
             assert np.all(gap <= whole.probability_error + half.probability_error)
 
     def test_rounding_of_the_half_grid_is_stated(self, monkeypatch):
-        """Late, where the modes of mirror images lose digits that those of the whole grid keep."""
+        """At late times the half grid loses digits that the whole one keeps; its error says so."""
         halves = exact((-6.0, 7.0), [40.0, 400.0], 1)
         monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
         wholes = exact((-6.0, 7.0), [40.0, 400.0], 1)
@@ -89,7 +89,7 @@ class TestDeterministic:
         assert np.all(gap <= one.probability_error + other.probability_error)
 
     def test_two_zeros_of_g(self):
-        """A g that is positive in both tails; false alarms 1e-5."""
+        """Monte Carlo agrees for a g that is positive in both tails; false alarms 1e-5."""
         with pytest.warns(AssumptionWarning):
             scene = ns.Scene("friction", observable="y + y**2 - 0.1805319960014103")
         sample = ns.crossing_probability(scene, 0.6, [2.0], 1, paths=20_000, step=0.02)
@@ -111,7 +111,7 @@ class TestDeterministic:
         assert found.probability_error[0] <= tol
 
     def test_g_that_vanishes_on_a_half_line(self):
-        """Int g increases only, at twice the rate of y, while y > 0; false alarms 1e-5."""
+        """Int g only increases, with 2 y while y > 0; Monte Carlo agrees; false alarms 1e-5."""
         scene = ns.Scene("friction", observable="y + abs(y)")
         found = exact(0.6, [1.0], 1, scene)
         sample = ns.crossing_probability(scene, 0.6, [1.0], 1, paths=20_000, step=0.02)
@@ -120,7 +120,7 @@ class TestDeterministic:
         assert gap[0] < 4.5 * sample.probability_error[0] + bias[0]
 
     def test_survival_decays_like_its_leading_pole(self):
-        """To relative accuracy, far below the rounding of 1 - W."""
+        """Late 1 - W falls by equal factors in equal times, far below the rounding of W."""
         survival = exact(0.6, [60.0, 80.0, 100.0], 1000).survival.values
         assert survival[-1] < 1e-13
         assert survival[2] / survival[1] == pytest.approx(survival[1] / survival[0], rel=1e-3)
@@ -134,7 +134,7 @@ class TestDeterministic:
         assert found.probability_error[1] < 1e-3 * found.probability[1] < 1e-10
 
     def test_a_crossing_that_is_out_of_reach(self):
-        """The transform is below rounding on all of the axis that matters."""
+        """W is 0 and its error below 1e-13 where the transform is below rounding."""
         found = exact(10.0, [0.005, 0.01], 0.01)
         assert np.all(found.probability == 0)
         assert np.all(found.probability_error <= 1e-13)

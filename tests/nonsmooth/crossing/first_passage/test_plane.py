@@ -40,9 +40,10 @@ class TestSlab:
     @pytest.mark.parametrize("z", [0.02, 0.5, 0.3 + 2.0j])
     @pytest.mark.parametrize("levels", [(-2.0, 2.0), (-1.0, 2.0), (-np.inf, 1.0), (-1.0, np.inf)])
     def test_agrees_with_the_modes_of_one_variable(self, z, levels):
-        """On the same grid, whose modes are exact; half as thin a slab shows the error.
+        """On the grid of one variable, whose modes are exact, the stated error holds.
 
-        Of an order of 0.6 at least, for speeds go down to 0: then it is twice the difference.
+        Slabs of half the thickness show the error. It is of an order of at least 0.6, since speeds
+        go down to 0, and so at most twice the difference.
         """
         line = ordinates(ns.Scene("friction"), 6, 1.0)
         exact = case_modes.first_passage(line, z, *levels)
@@ -53,7 +54,7 @@ class TestSlab:
 
     @pytest.mark.parametrize("name", SCENES)
     def test_exits_surely(self, name):
-        """(1 - h) / z tends to the mean exit time, from below for it is convex."""
+        """(1 - h) / z increases to the mean exit time as z falls, so that exit is certain."""
         scene, level = SCENES[name]
         grid = coarse_ordinates(scene)
         mean = [
@@ -78,7 +79,7 @@ class TestSlab:
         assert gap[0] / gap[1] == pytest.approx(4, rel=1 / 3)
 
     def test_one_wall_far_away_is_none(self):
-        """A wall that is not reached."""
+        """A wall that is never reached changes nothing."""
         grid, z = coarse_ordinates(PLASTIC_STRAIN), 1.0
         far = plane.first_passage(grid, z, -40.0, 0.3, 0)
         assert far == pytest.approx(plane.first_passage(grid, z, -np.inf, 0.3, 0), abs=1e-6)
@@ -97,7 +98,7 @@ class TestCrossing:
         ],
     )
     def test_agrees_with_monte_carlo(self, name, paths, p):
-        """Within 4.5 standard errors, false alarms 3e-5 in all, and the measured bias."""
+        """Both agree within 4.5 standard errors and the step's bias; false alarms 3e-5 in all."""
         scene, level = SCENES[name]
         horizons = [2.0]
         found = ns.crossing_probability(scene, level, horizons, p, method="deterministic", tol=2e-3)

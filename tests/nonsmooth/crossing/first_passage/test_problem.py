@@ -74,7 +74,7 @@ class Known(DirectProblem):
 
 
 def test_a_known_transform():
-    """First passage of Brownian motion by its transform, against its series, over all stages."""
+    """First passage of Brownian motion from its transform agrees with its series at all times."""
     found = refined(Brownian(ns.Scene("friction"), -1.0, 1.0), TIMES, 1e-8)
     exact = np.array([float(ns.brownian_crossing(1.0, t)) for t in TIMES])
     survival = np.array([float(ns.brownian_survival(1.0, t)) for t in TIMES])
