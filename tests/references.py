@@ -1,8 +1,8 @@
 """Scenes and numbers that several tests share, each number with where it comes from.
 
-Every number is that of C_b = 1 and a white forcing of unit strength. Two computations that share no
-code agreed on it, as the manual says on the page that is named. gamma2 is the asymptotic variance,
-kappa the extrapolation length and W the probability of a threshold crossing.
+Every number is that of C_b = 1 and a white forcing of unit strength. Two independent computations
+agreed on it before it was published in the manual, on the page that is named. gamma2 is the
+asymptotic variance, kappa the extrapolation length and W the probability of a threshold crossing.
 """
 
 from dataclasses import replace
@@ -12,6 +12,7 @@ import nonsmooth as ns
 FALSE_ALARM = 1e-5  # the probability with which a correct sample fails a test
 
 FRICTION = ns.Scene("friction", n=100)  # g = y
+PLASTIC = ns.Scene("elasto_plastic", n=100, potential="x**2/2")  # g = y
 OBSTACLE = ns.Scene("obstacle", n=100, potential="x**2/2", observable="x")
 COLORED_FRICTION = ns.Scene("friction", "langevin")
 PLASTIC_STRAIN = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
@@ -23,6 +24,8 @@ MIRRORED = ns.Scene("friction", observable="y - 0.3*abs(y) + 0.0958534263954079"
 # of FRICTION and its limit n = inf: docs/methods/line.md
 GAMMA2 = 0.137696412899501
 GAMMA2_LIMIT = 0.137679199643661
+# the first eigenvalue of -A of that limit, its digits cut off: docs/methods/line.md
+LAMBDA_LIMIT = 2.53719
 # of OBSTACLE, the last digit rounded: docs/methods/statistics.md
 GAMMA2_OBSTACLE = 0.441883416
 # of FRICTION, the last digit rounded: docs/methods/boundary_layer.md

@@ -11,6 +11,7 @@ import pytest
 import typst
 
 import nonsmooth as ns
+from references import FRICTION
 from reproduction.jobs import artifact
 from support import ROOT
 
@@ -90,7 +91,7 @@ def test_table_6_has_its_scene_within_its_errors(smoke_run):
     """One scene, dry friction, whose gamma^2 is the closed form's."""
     table = pd.read_csv(smoke_run.folder / RESULTS / "tables" / "table_6.csv").set_index("scene")
     assert len(table) == 1
-    exact = ns.asymptotic_variance(ns.Scene("friction", n=100)).value
+    exact = ns.asymptotic_variance(FRICTION).value
     row = table.loc["friction_white"]
     allowed = 5 * math.hypot(row.gamma2_error, row.bias_error) + abs(row.bias)
     assert abs(row.gamma2 - exact) < allowed

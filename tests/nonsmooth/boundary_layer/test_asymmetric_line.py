@@ -8,7 +8,7 @@ from nonsmooth.boundary_layer import symmetric_line
 from nonsmooth.boundary_layer.asymmetric_line import layer_constants
 from nonsmooth.line.eigenfunctions import spectrum
 from nonsmooth.line.quadrature import mean as stationary_mean
-from references import KAPPA, MIRRORED, SKEWED, SKEWED_AND_STARTED
+from references import FRICTION, KAPPA, MIRRORED, SKEWED, SKEWED_AND_STARTED
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def test_odd_g_on_the_whole_grid(monkeypatch):
     """Kappa is that of the half grid on both sides."""
     monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)
     for side in ("lower", "upper"):
-        found = ns.extrapolation_length(ns.Scene("friction"), side=side)
+        found = ns.extrapolation_length(FRICTION, side=side)
         assert abs(found.value - KAPPA) < 2e-9
 
 

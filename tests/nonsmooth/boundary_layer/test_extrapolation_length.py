@@ -3,17 +3,16 @@
 import pytest
 
 import nonsmooth as ns
+from references import FRICTION
 
 
 def test_both_sides_of_an_odd_g():
     """An odd g has one extrapolation length for both sides."""
-    lower, upper = (
-        ns.extrapolation_length(ns.Scene("friction"), side=side) for side in ("lower", "upper")
-    )
+    lower, upper = (ns.extrapolation_length(FRICTION, side=side) for side in ("lower", "upper"))
     assert (lower.value, lower.error) == (upper.value, upper.error)
 
 
 def test_unknown_side():
     """A side that is neither is refused; the message has the choices."""
     with pytest.raises(ns.NonsmoothError, match="choose 'lower' or 'upper'"):
-        ns.extrapolation_length(ns.Scene("friction"), side="left")
+        ns.extrapolation_length(FRICTION, side="left")

@@ -12,6 +12,7 @@ from nonsmooth.grids import potential_wells, tuning
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.symbols import eta
 from nonsmooth.statistics import tuning as statistics_tuning
+from references import FRICTION
 
 
 def langevin_growth(noise):
@@ -94,7 +95,7 @@ def test_paths_that_never_leave_their_well_are_refused(monkeypatch):
 def test_wells_and_what_is_none():
     """One start in each; a ripple below 2 kT and a slope in one direction make none."""
     double = ns.Langevin("eta**4/4 - 2*eta**2")
-    assert potential_wells.starts(ns.Scene("friction")) == [{}]
+    assert potential_wells.starts(FRICTION) == [{}]
     found = potential_wells.starts(ns.Scene("friction", double, potential="x**2/2", observable="x"))
     assert [point["eta"] for point in found] == pytest.approx([-2, 2], abs=0.01)
     assert [point["x"] for point in found] == pytest.approx([0, 0], abs=0.01)

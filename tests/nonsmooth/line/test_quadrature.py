@@ -12,6 +12,7 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.line import eigenfunctions, quadrature
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.scenes.noises import White
+from references import FRICTION
 
 EPS = np.finfo(float).eps
 
@@ -362,7 +363,7 @@ def test_public_function_uses_it():
     """The estimate says how; a tiny C_b, for which the closed form cancels, is no obstacle."""
     found = ns.asymptotic_variance(ns.Scene("friction", observable="y**3"))
     assert found.method == "quadrature"
-    assert ns.asymptotic_variance(ns.Scene("friction")).method == "closed form"
+    assert ns.asymptotic_variance(FRICTION).method == "closed form"
     found = ns.asymptotic_variance(ns.Scene("friction", damping=1e-5))
     assert found.method == "quadrature"
     exact, own = friction_variance(100, 1e-5)

@@ -28,13 +28,12 @@ def test_tolerance_is_met():
 def test_what_would_take_for_ever_is_refused():
     """One line with a tolerance that would not."""
     with pytest.raises(ToleranceError, match="use tol >="):
-        simulate(ns.Scene("friction", n=100), 10.0, tol=1e-9)
+        simulate(FRICTION, 10.0, tol=1e-9)
 
 
 def test_a_step_above_all_time_scales_is_refused():
     """The message says to choose a smaller step."""
-    scene = ns.Scene("friction")
     with pytest.raises(ToleranceError, match="choose a smaller step"):
-        ns.simulate(scene, horizon=500, step=50.0, paths=1000)
+        ns.simulate(FRICTION, horizon=500, step=50.0, paths=1000)
     with pytest.raises(ToleranceError, match="choose a smaller step"):
-        ns.crossing_probability(scene, 0.6, [2.0], p=250, step=50.0, paths=1000)
+        ns.crossing_probability(FRICTION, 0.6, [2.0], p=250, step=50.0, paths=1000)

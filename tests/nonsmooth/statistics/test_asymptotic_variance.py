@@ -5,11 +5,12 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.statistics.asymptotic_variance import stationary_mean
+from references import FRICTION, OBSTACLE
 
 
 def test_mean_by_symmetry_quadrature_and_simulation():
     """0 for odd g; E y^2 of friction; E y^2 = 1/2 of the obstacle."""
-    assert stationary_mean(ns.Scene("obstacle", potential="x**2/2", observable="x")) == (0.0, 0.0)
+    assert stationary_mean(OBSTACLE) == (0.0, 0.0)
     exact, error = stationary_mean(ns.Scene("friction", observable="y**2"))
     assert 0 < error < 1e-14
     assert 0 < exact < 0.5
@@ -28,6 +29,6 @@ def test_the_method_follows_from_the_tolerance():
     """Three variables are sampled to a tenth; what has no solver always is."""
     scene = ns.Scene("obstacle", "langevin", potential="x**2/2", observable="x")
     assert ns.asymptotic_variance(scene, 0.1).method == "Monte Carlo"
-    assert ns.asymptotic_variance(ns.Scene("friction"), 0.1).method == "closed form"
+    assert ns.asymptotic_variance(FRICTION, 0.1).method == "closed form"
     assert ns.variance(scene, [1.0], 0.05).attrs["method"] == "monte_carlo"
-    assert ns.variance(ns.Scene("friction"), [1.0], 0.05).attrs["method"] == "deterministic"
+    assert ns.variance(FRICTION, [1.0], 0.05).attrs["method"] == "deterministic"

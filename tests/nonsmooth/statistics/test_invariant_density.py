@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.paths.ensembles import paths_at
@@ -17,9 +16,7 @@ from nonsmooth.statistics.invariant_density import (
     densities_on,
     invariant_density,
 )
-from references import FALSE_ALARM, FRICTION, OBSTACLE
-
-PLASTIC = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
+from references import FALSE_ALARM, FRICTION, OBSTACLE, PLASTIC
 
 
 def test_gibbs_density_is_the_grids():

@@ -15,12 +15,12 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.statistics import moments_on_grids, tuning
-from references import OBSTACLE
+from references import COLORED_FRICTION, OBSTACLE, PLASTIC
 
 TAU = np.array([0.0, 0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 100.0, 1000.0])
 SCENES = {
-    "friction": ns.Scene("friction", "langevin", n=100),
-    "elasto_plastic": ns.Scene("elasto_plastic", n=100, potential="x**2/2"),
+    "friction": COLORED_FRICTION,
+    "elasto_plastic": PLASTIC,
     "obstacle": OBSTACLE,
 }
 # until which the state is, but for eight standard deviations, where the drift is linear

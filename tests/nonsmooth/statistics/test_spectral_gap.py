@@ -7,6 +7,7 @@ import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.ensembles import paths_at
 from nonsmooth.paths.sampling import Sampling
+from references import LAMBDA_LIMIT
 
 
 def linear(damping, stiffness):
@@ -33,9 +34,9 @@ def test_friction_waits_for_the_noise():
 
 
 def test_dry_friction_in_the_limit():
-    """The slowest rate for n = inf is 2.53719."""
+    """The gap at n = inf is the first eigenvalue."""
     found = ns.spectral_gap(ns.Scene("friction", n=np.inf))
-    assert found.value == pytest.approx(2.53719, abs=1e-5)
+    assert found.value == pytest.approx(LAMBDA_LIMIT, abs=1e-5)
 
 
 def test_correlations_decay_at_the_gap():

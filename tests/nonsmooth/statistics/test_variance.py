@@ -5,17 +5,18 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
+from references import FRICTION
 
 
 def test_sampled_variance_meets_its_tolerance():
     """The variance is within tol of that of the eigenfunctions; a false alarm in 100 runs."""
-    scene, times = ns.Scene("friction"), np.array([1.0, 10.0])
-    exact = ns.variance(scene, times)["v"]
-    found = ns.variance(scene, times, 3e-3, "monte_carlo")
+    times = np.array([1.0, 10.0])
+    exact = ns.variance(FRICTION, times)["v"]
+    found = ns.variance(FRICTION, times, 3e-3, "monte_carlo")
     assert np.all(np.abs(found["v"] - exact) <= 3e-3 * times)
     assert np.all(found["v_error"] <= 3e-3 * times)
     with pytest.raises(ToleranceError, match=r"v\(tau\)/tau = .* use tol >="):
-        ns.variance(scene, times, 1e-9, "monte_carlo")
+        ns.variance(FRICTION, times, 1e-9, "monte_carlo")
 
 
 def test_rare_yielding_is_not_taken_for_rest():

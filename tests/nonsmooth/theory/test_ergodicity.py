@@ -13,6 +13,7 @@ from nonsmooth.scenes.relaxation import rate_at_infinity
 from nonsmooth.scenes.symbols import x, y
 from nonsmooth.theory import ergodicity, lyapunov
 from nonsmooth.theory.ergodicity import decay_rate, poisson_bound
+from references import FRICTION
 
 
 def linear(damping, stiffness):
@@ -117,7 +118,7 @@ def test_what_has_no_rate_is_refused():
     with pytest.raises(ToleranceError, match="nearly coincide"):
         decay_rate(linear(2.0, 1.05)[0])
     with pytest.raises(ToleranceError, match="take a longer step"):
-        decay_rate(ns.Scene("friction"), 1e-4)
+        decay_rate(FRICTION, 1e-4)
 
 
 def test_the_narrow_valley_of_stiff_walls():

@@ -8,7 +8,7 @@ import xarray as xr
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
-from references import GAMMA2, GAMMA2_OBSTACLE, W
+from references import FRICTION, GAMMA2, GAMMA2_OBSTACLE, W
 from reproduction.errors import CheckError
 from reproduction.speed_against_error.pathwise import BrownianPaths
 from reproduction.speed_against_error.work_precision import (
@@ -118,7 +118,7 @@ class TestReferences:
     @pytest.mark.parametrize(("p", "published"), [(1, W[1]), (1000, W[1000])])
     def test_inversion_on_a_line(self, script, p, published):
         """Against seven digits known before."""
-        value, error = script("crossing")["on_a_line"](ns.Scene("friction", n=100), 0.6, 2.0, p)
+        value, error = script("crossing")["on_a_line"](FRICTION, 0.6, 2.0, p)
         assert error < 1e-7
         assert abs(value - published) < error + 1e-7
 

@@ -10,7 +10,7 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
-from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
+from references import COLORED_FRICTION, FRICTION, OBSTACLE, PLASTIC_STRAIN
 from support import coarse_ordinates
 
 SCENES = {
@@ -45,7 +45,7 @@ class TestSlab:
         Slabs of half the thickness show the error. It is of an order of at least 0.6, since speeds
         go down to 0, and so at most twice the difference.
         """
-        line = ordinates(ns.Scene("friction"), 6, 1.0)
+        line = ordinates(FRICTION, 6, 1.0)
         exact = case_modes.first_passage(line, z, *levels)
         grid = of_one_variable(line)
         coarse, fine = (plane.first_passage(grid, z, *levels, resolution=r) for r in (1, 2))
@@ -69,7 +69,7 @@ class TestSlab:
         The ratio 4 of the distances is met to a third, for the next order.
         """
         level, z = 0.6 * np.sqrt(10), 0.1
-        white = ordinates(ns.Scene("friction"), 9, 1.0)
+        white = ordinates(FRICTION, 9, 1.0)
         exact = case_modes.first_passage(white, z, -level, level).real
         gap = []
         for theta in (10.0, 40.0):

@@ -15,6 +15,7 @@ from nonsmooth.crossing.first_passage.problem import (
     Settings,
 )
 from nonsmooth.errors import ToleranceError
+from references import FRICTION
 
 TIMES = np.array([0.01, 0.1, 1.0, 10.0, 30.0])
 
@@ -75,7 +76,7 @@ class Known(DirectProblem):
 
 def test_a_known_transform():
     """First passage of Brownian motion from its transform agrees with its series at all times."""
-    found = refined(Brownian(ns.Scene("friction"), -1.0, 1.0), TIMES, 1e-8)
+    found = refined(Brownian(FRICTION, -1.0, 1.0), TIMES, 1e-8)
     exact = np.array([float(ns.brownian_crossing(1.0, t)) for t in TIMES])
     survival = np.array([float(ns.brownian_survival(1.0, t)) for t in TIMES])
     assert np.all(np.abs(found["probability"] - exact) <= found["probability_error"] + 1e-15)
@@ -88,8 +89,7 @@ def test_a_known_transform():
 
 def test_errors_are_differences_of_levels():
     """Refinement stops when two levels agree; a small tolerance skips the first one."""
-    scene = ns.Scene("friction")
-    found = refined(Known(scene, -1.0, 1.0, (0.0, 1e-5, 1e-7, 1.1e-7)), TIMES[1:4], 1e-6)
+    found = refined(Known(FRICTION, -1.0, 1.0, (0.0, 1e-5, 1e-7, 1.1e-7)), TIMES[1:4], 1e-6)
     assert np.all(found["probability_error"] < 1e-6)
     with pytest.raises(ToleranceError, match="do something else"):
-        refined(Known(scene, -1.0, 1.0, (0.0, 1e-3, 1e-4)), TIMES[1:4], 1e-6)
+        refined(Known(FRICTION, -1.0, 1.0, (0.0, 1e-3, 1e-4)), TIMES[1:4], 1e-6)
