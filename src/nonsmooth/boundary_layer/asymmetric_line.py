@@ -33,15 +33,15 @@ def layer_constants(
     Parameters
     ----------
     scene : Scene
-        To which this `applies`, with E g = 0; if g is odd, its grid is a half, which this cannot
-        take.
+        To which this `applies`, with E g = 0. Scenes with odd g and drift are excluded because they
+        are discretised on half of the line.
     tol : float, optional
         Absolute error wanted of all constants; 1e-8 unless given.
 
     Returns
     -------
     constants, errors : LayerConstants
-        The errors are the differences of two polynomial degrees.
+        The errors are the differences of the results of two polynomial degrees.
 
     Raises
     ------
@@ -86,8 +86,8 @@ def _modes(grid: Ordinates, g: np.ndarray) -> _Modes:
 
     Modes (a + psi) exp(mu x), psi = 0 at one node, satisfy K psi = mu M g (a + psi), with the
     stiffness matrix K and the masses M, and carry no flux, E[g psi] = 0. With the Cholesky factor
-    of K they are eigenvectors of a symmetric matrix on the complement of the flux, 1/mu its
-    eigenvalues, and its row along the flux is the constant a.
+    of K they are eigenvectors of a symmetric matrix, restricted to the complement of the flux; 1/mu
+    are the eigenvalues. The component of the equation along the flux gives the constant a.
     """
     rest = np.delete(np.arange(len(grid.g)), np.argmax(grid.masses))
     weights = grid.masses[rest] * g[rest]
@@ -114,7 +114,10 @@ def _modes(grid: Ordinates, g: np.ndarray) -> _Modes:
 
 
 def _at_threshold(grid: Ordinates, g: np.ndarray, modes: _Modes, side: int) -> tuple:
-    """Solve the Milne problem at one side, -1 or 1; returns kappa and the integral of E d."""
+    """Solve the Milne problem at one side, -1 or 1.
+
+    Return kappa and the integral over x < 0 of E d, d being the sum of the modes that decay.
+    """
     leaving = np.flatnonzero(side * g > 0)
     decaying = np.argsort(-side * modes.inverses)[: len(leaving) - 1]
     scale = np.sqrt(grid.masses[leaving])
@@ -133,7 +136,7 @@ def _on_degree(scene: Scene, degree: int, mean: float) -> LayerConstants:
             f"the extrapolation length needs E g = 0, but g = {scene.observable!r} has the mean "
             f"{mean:.10g}; subtract it from g"
         )
-    # without what the quadrature leaves of the mean
+    # subtract what the quadrature leaves of the mean
     g = grid.g - np.where(grid.g == 0, 0.0, grid.masses @ grid.g)
     modes = _modes(grid, g)
     diffusion, u = modes.diffusion, modes.u

@@ -1,7 +1,7 @@
 """The constants of the layer at a threshold, as the corrected formulas use them.
 
 `docs/methods/boundary_layer.md` derives them. A is the generator, u the solution of the Poisson
-equation A u = -g, and angle brackets in the manual are means under the invariant measure.
+equation A u = -g, and E the mean under the invariant measure, angle brackets in the manual.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class LayerConstants:
-    """Constants of a scene, or their errors; what is not known is None.
+    """Constants of a scene, or the errors of such constants; those that are not known are None.
 
     For odd g both thresholds have the same kappa and the same dipole, and the skewness is 0.
 
@@ -26,13 +26,16 @@ class LayerConstants:
     skewness : float
         C = E[g u^2]. The third cumulant of int_0^t g grows like 6 C t.
     dispersion : float or None
-        B = E[g r]. The logarithm of E exp(q int_0^t g) grows like (D q^2 + C q^3 + B q^4) t.
+        B = E[g r]. The logarithm of E exp(q int_0^t g) grows like (D q^2 + C q^3 + B q^4) t for
+        small q.
     dipole : (float, float) or None
-        S at the lower and at the upper threshold: a source that the start of time leaves there.
+        S at the lower and at the upper threshold. The Brownian survival probability starts as 1
+        plus a dipole of this strength at the threshold, which accounts for early times.
     h : float or None
         Value at the start of h, A h = D - g u.
     kappa3 : float or None
-        A wave of the wave number k has the extrapolation length kappa + kappa3 k^2 / p; for odd g.
+        At a finite p a wave cos(k x) has the extrapolation length kappa + kappa3 k^2 / p; for
+        odd g.
     r : float or None
         Value at the start of r, A r = D u + C - g h.
     """
@@ -49,7 +52,7 @@ class LayerConstants:
 
     @property
     def order(self) -> int:
-        """The highest order of the corrected formula that the known constants suffice for."""
+        """The highest order of the corrected formula for which the known constants suffice."""
         if self.dispersion is None:
             return 1
         return 2 if self.kappa3 is None else 3
@@ -60,7 +63,7 @@ class LayerConstants:
         return float(np.max(np.abs(np.hstack(known))))
 
     def distance(self, other: "LayerConstants") -> "LayerConstants":
-        """Return the absolute differences to constants of which the same are known."""
+        """Return the absolute differences to other constants, of which the same must be known."""
         return LayerConstants(
             *(
                 _difference(value, reference)

@@ -23,11 +23,11 @@ def extrapolation_length(
     Parameters
     ----------
     scene : Scene
-        With the state y, white noise, and E g = 0; with two variables, finite n and odd g; or any
-        other with odd g, by Monte Carlo.
+        With the state y, white noise, and E g = 0; or with two variables, finite n and odd g and
+        drift; or any other with odd g, by Monte Carlo.
     tol : float, optional
-        Absolute error wanted, "1"; 1e-8, 1e-3 for two variables, or by Monte Carlo a fifth of
-        kappa, unless given.
+        Absolute error wanted, "1". Unless given, it is 1e-8 for one variable, 1e-3 for two, and a
+        fifth of kappa by Monte Carlo.
     side : {"upper", "lower"}, optional
         Of the threshold. For odd g kappa is the same on both sides.
     seed, threads
@@ -36,8 +36,8 @@ def extrapolation_length(
     Returns
     -------
     Estimate
-        kappa, "1". The error is the difference of two polynomial degrees, or of two tensor grids;
-        of Monte Carlo, see `sampled`.
+        kappa, "1". The error is the difference of the results of two polynomial degrees; for two
+        variables see `two_variables.layer_constants`, for Monte Carlo `sampled.sampled_kappa`.
 
     Raises
     ------

@@ -11,7 +11,7 @@ from nonsmooth.statistics.asymptotic_variance import limit_variance
 
 
 def highest_order(scene: Scene) -> int:
-    """Return the order of the corrected formula that `layer_constants` will suffice for."""
+    """Return the highest order of the corrected formula for which `layer_constants` suffices."""
     if not scene.is_line:
         return 1
     return 3 if scene.is_odd() else 2
@@ -46,7 +46,7 @@ def solved_constants(
     return None
 
 
-@lru_cache(maxsize=16)  # the same for every p and interval
+@lru_cache(maxsize=16)  # the constants serve every p and every interval
 def layer_constants(
     scene: Scene, seed: int | tuple = 0, threads: int | None = None
 ) -> tuple[LayerConstants, LayerConstants]:

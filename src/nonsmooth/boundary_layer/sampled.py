@@ -1,9 +1,10 @@
 """Extrapolation length of any scene with odd g, by Monte Carlo.
 
-Let u be the Poisson solution of g, -A u = g. Then int_0^t g + u is a martingale. At the first
-passage of a far threshold, the mean of u therefore is the extrapolation length kappa, and what
-int g gains on average after the passage tends to the mean of u. Paths run through cycles: a cycle
-lasts until int g has moved by b to either side, and for some time after that.
+Let u be the Poisson solution of g, -A u = g. Then int_0^t g + u is a martingale. Let a path first
+pass a far threshold. The mean of u at this moment is the extrapolation length kappa, and it is also
+the mean of all that int g gains from then on. This gain is what is sampled. Paths run through
+cycles: a cycle lasts until int g has moved by b to either side, and for some time after that. At
+equidistant times, called looks, a path is examined for passages.
 """
 
 import time
@@ -64,9 +65,10 @@ def sampled_kappa(
     Returns
     -------
     Estimate
-        The error is two standard errors and what kappa changes if the threshold is halved, the
-        time after the passage is halved, or paths are looked at every other step only; and the bias
-        of the time step, as measured by halving it on the same noise, with two of its own.
+        The error is the sum of two standard errors; of the changes of kappa if the threshold is
+        halved, if the time after the passage is halved, and if paths are looked at every other step
+        only; and of the bias of the time step, measured by halving it on the same noise, with two
+        standard errors of that.
 
     Raises
     ------
@@ -107,7 +109,8 @@ def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = N
     -------
     Estimate
         The error is two standard errors, what the second half of the time adds, and the bias of the
-        time step with two standard errors. Exactly 0 at the origin, where drift and g are odd.
+        time step with two standard errors. For a start at the origin the value is exactly 0,
+        because drift and g are odd.
     """
     began = time.perf_counter()
     if not any(scene.start.values()):
@@ -157,7 +160,7 @@ def _spread(scene, after, sampling):
 
 
 def _gains(scene, after, cycles, sampling):
-    """Sum by path what is gained in cycles, and count these: shape (cycles, 2, paths)."""
+    """For each path, sum the gains of its cycles and count the cycles: shape (cycles, 2, paths)."""
     s = registry.coefficients(scene, sampling.scheme, sampling.step, sampling.precision)
 
     def run(job):
@@ -178,7 +181,7 @@ def _gains(scene, after, cycles, sampling):
 
 
 def _step_bias(scene, after, cycle, sampling):
-    """Bias of the mean gain with the step, and its standard error, from half of it."""
+    """Measure the bias of the mean gain by halving the time step; return it and its error."""
     fine, coarse = (
         registry.coefficients(scene, sampling.scheme, h, sampling.precision)
         for h in (sampling.step / 2, sampling.step)
@@ -221,7 +224,7 @@ def _begun(integral):
 
 @kernel
 def _look(state, integral, threshold, after):
-    """Notice passages and, `after` looks later, what int g has gained beyond the threshold."""
+    """Notice passages and, `after` looks later, add what int g has gained beyond the threshold."""
     base, side, waited, total, count = state
     for i in range(len(integral)):
         moved = integral[i] - base[i]

@@ -33,13 +33,13 @@ def layer_constants(
     scene : Scene
         To which this `applies`.
     tol : float, optional
-        Absolute error wanted of kappa, and of the other constants relative to the largest of all,
-        if that is above 1; 1e-8 unless given.
+        Absolute error wanted of kappa, and of the other constants times the largest of them if that
+        is above 1; 1e-8 unless given.
 
     Returns
     -------
     constants, errors : LayerConstants
-        The errors are the differences of two polynomial degrees.
+        The errors are the differences of the results of two polynomial degrees.
 
     Raises
     ------
@@ -79,8 +79,8 @@ class _Milne:
     """The solution q = kappa - x - u + d of the Milne problem, d a sum of modes that decay.
 
     The mode j has the even part `even[:, j]` and the odd part `odd[:, j]`, both times its strength
-    in q, and decays like exp(x / inverses[j]). The first even node is the origin, where odd parts
-    and u are 0 and which they leave out.
+    in q, and decays like exp(x / inverses[j]). The first node of the even parts is the origin. The
+    odd parts and u are 0 there and leave it out.
     """
 
     diffusion: float

@@ -18,17 +18,16 @@ class TwoVariables:
     """The Milne problem of two variables, on tensor grids."""
 
     accuracy: float = 1e-3  # absolute, unless asked; chosen: what takes up to two minutes
-    depth: float = (
-        16.0  # the box ends where the density is exp(-16) of its largest; chosen: 1e-7 is left
-    )
-    zero: float = 1e-13  # |g| over its largest, up to which it is 0; derived: above rounding of g
+    # the box ends where the density is exp(-16) of its maximum; chosen: only 1e-7 is left outside
+    depth: float = 16.0
+    zero: float = 1e-13  # |g| up to this counts as 0, relative; derived: above rounding of g
     largest: int = 3000  # nodes with g != 0; chosen: a minute of dense linear algebra
     # correlation of g and its Poisson solution below which gamma^2 counts as 0; chosen: above the
     # discretisation error of a gamma^2 that is 0
     standstill: float = 1e-3
     gamma2: float = 1e-5  # relative error wanted of gamma^2; chosen: it costs less than the rest
-    # the last change of a variable is at most the tolerance over this; derived: twice the change of
-    # either of two variables is half the tolerance, the rest is left to what they change together
+    # the last change of a variable is at most the tolerance over this; derived: twice the changes
+    # of both variables are half the tolerance; the other half is for what they change together
     safety: float = 8.0
     # smallest scale of a node over the largest; chosen: discrete densities are rounding below
     smallest_scale: float = 1e-10
@@ -40,16 +39,18 @@ class Sampled:
 
     tolerance: float = 0.2  # relative error, unless asked; chosen: seconds, enough for a correction
     paths: int = 2000  # at first, doubled at each attempt; chosen: two blocks of paths
-    # time after a passage, in units of the larger of 1 and 1 / C_b, at first; chosen: e^-4 = 2 %
+    # time after a passage at the first attempt, in units of the larger of 1 and 1 / C_b; chosen:
+    # if that is the relaxation time, e^-4 = 2 % is left of correlations
     lag: float = 4.0
     cycles: int = 75  # duration of a path over that time; chosen: dozens of passages on each path
     # threshold over the standard deviation of what int g gains in that time; chosen: the start of a
     # cycle is forgotten at the passage
     far: float = 2.0
     attempts: int = 3  # each with more paths and time; chosen: a minute
-    start: float = 0.05  # relative error of the variance for the mean from the start; chosen
-    # paths that measure the bias of the step: at least, and one in so many of all; chosen: with
-    # steps and half steps they cost three quarters of the others
+    # tolerance of the simulation that gives the mean of int g from the start; chosen: quick
+    start: float = 0.05
+    # paths that measure the bias of the step: the least number, and one in so many of all paths;
+    # chosen: with whole and half steps they cost three quarters of what the others cost
     pilot_paths: int = 1000
     halved: int = 4
 

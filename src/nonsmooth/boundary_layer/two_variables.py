@@ -53,7 +53,8 @@ def layer_constants(
     """
     tol = tuning.TWO_VARIABLES.accuracy if tol is None else tol
     grid, best = fitted(scene, tuning.TWO_VARIABLES.depth, 0), math.nan
-    # if the variables change too much together, once more from a finer grid; `_solved` ends it
+    # if refining both variables changes too much beyond the sum of the separate changes, start
+    # again from a finer grid; `_solved` raises an error when the grid is too large
     while True:
         values, errors = _refined_from(scene, grid, tol, best)
         if errors.max() <= tol:
@@ -69,7 +70,7 @@ def layer_constants(
 
 
 def _refined_from(scene, coarse, tol, best):
-    """Refine each variable alone until it has settled; returns what `_milne` does and the error."""
+    """Refine each variable alone until it has settled; return the values of `_milne` and errors."""
     first, second = coarse.levels
     base = _solved(scene, coarse, best)
     values, errors, once = base, np.zeros(2), {}
@@ -84,7 +85,7 @@ def _refined_from(scene, coarse, tol, best):
 
 
 def _refined_along(scene, coarse, symbol, base, best, tol) -> tuple[Refined, np.ndarray]:
-    """Refine one variable until it has settled; returns also the values after one refinement."""
+    """Refine one variable until it has settled; return also the values after one refinement."""
     solutions = []
 
     def solve(grid):
@@ -101,7 +102,7 @@ def _refined_along(scene, coarse, symbol, base, best, tol) -> tuple[Refined, np.
 
 
 def _ever_finer(grid, symbol):
-    """Resolve one variable better and better; `_solved` says where a grid is too large."""
+    """Resolve one variable better and better, without end; `_solved` refuses too large grids."""
     while True:
         yield grid
         grid = grid.raised(symbol)
@@ -126,7 +127,7 @@ def _milne(scene: Scene, grid) -> np.ndarray | None:
     )
     if len(kept) > tuning.TWO_VARIABLES.largest:
         return None
-    # masses of both mirror images together; upwind ones may be negative in the tails
+    # masses of both mirror images together; upwinding may make them negative in the tails
     measure, g = 2 * solve.fold(solve.stationary()), everywhere[kept]
     source = np.zeros((len(everywhere), len(kept)))
     source[kept, np.arange(len(kept))] = g

@@ -87,7 +87,7 @@ def half_space(made: Slab) -> np.ndarray:
 
 
 def _step(scattering, speeds, thickness):
-    """Slab of one implicit Euler step: h in the slab is taken to be h where the flow enters."""
+    """Make the slab of one implicit Euler step: in it h is taken to be h where the flow enters."""
     many, sign = len(speeds), np.sign(speeds)
     rate = np.abs(speeds) / thickness
     found = []

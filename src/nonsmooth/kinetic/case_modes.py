@@ -202,7 +202,7 @@ def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Wave
     if np.isinf(upper):
         return none, _of_one_wall(below, above, np.abs(g[down]), np.abs(g[up]), weights[down])
     far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
-    if grid.mirrored:  # both walls see the same
+    if grid.mirrored:  # by symmetry the modes of both walls have the same strengths
         strength = np.linalg.solve(above.own + above.other * far_above, weights)
         strengths = [strength, strength]
     else:
@@ -226,9 +226,9 @@ def _of_one_wall(wall, opposite, leaving, entering, right):
 
     For Re z > 0 these are the modes that decay away from the wall. The transform is needed for
     Re z < 0, too, as an analytic continuation; there the end of the grid reflects some modes,
-    which then grow. So modes are assigned to the wall by the sign of their flux <phi, g phi>, which
-    continues the other rule, and by their decay only where the flux is too small to tell. Growing
-    modes say something about velocities beyond the grid: they are not counted at the start.
+    which then grow. So modes are assigned to the wall by the sign of their flux <phi, g phi>. For
+    Re z > 0 this is the same rule. Decay decides only where the flux is too small to tell. Modes
+    that grow belong to velocities beyond the grid, so they do not contribute at the start.
     """
     own = np.hstack([wall.own, opposite.other])
     other = np.hstack([wall.other, opposite.own])

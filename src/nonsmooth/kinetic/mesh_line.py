@@ -1,4 +1,4 @@
-"""Where the elements of discrete ordinates of one state variable end.
+"""The edges of the elements for discrete ordinates of one state variable.
 
 Edges lie on the kinks of drift and g and on the zeros of g. Next to a threshold, the solution
 behaves like |y|^(1/2) where g = 0 (grazing), so that elements are graded towards these zeros, and
@@ -110,12 +110,12 @@ class _Widths:
         while True:
             left, right = edges[:-1], edges[1:]
             steep = np.abs(phi(right) - phi(left)) > settings.steepest
-            # a little more is allowed, or rounding would cut once more
+            # a little more is allowed, or rounding would cut elements that are just narrow enough
             cut = (right - left > 1.001 * self._allowed(left, right)) | steep
             if not cut.any():
                 return edges
             left, right = left[cut], right[cut]
-            # nearer to an end that is singular, so that elements there shrink fast
+            # the cut is nearer to an end that is singular, so that elements there shrink fast
             at_left, at_right = (
                 self._is_singular(left, right, left),
                 self._is_singular(left, right, right),
@@ -136,7 +136,10 @@ class _Widths:
         return np.minimum(graded, np.minimum(self._crossing(left), self._crossing(right)))
 
     def _crossing(self, y):
-        """Spread of the velocities of paths that go from y to a wall; wider where they are rare."""
+        """Width allowed by the spread of velocities of paths that go straight from y to a wall.
+
+        It is larger where such velocities are rare.
+        """
         settings, flow = tuning.LINE_ORDINATES, self.g(y)
         odd = self.scene.is_odd()
         lower, upper = (min(self.distances),) * 2 if odd else self.distances

@@ -1,4 +1,4 @@
-"""Discrete ordinates of the state (y, x) with white noise where all force has a potential.
+"""Discrete ordinates of (y, x) with white noise, where all forces but damping have potentials.
 
 The invariant density is then that of Gibbs, exp(-2 C_b (y^2/2 + U_n) / sigma^2). In the space of
 functions weighted by it, noise and damping are symmetric and the motion is skew-symmetric. In
@@ -28,7 +28,7 @@ from nonsmooth.scenes.symbols import x, y
 
 
 def applies(scene: Scene) -> bool:
-    """Whether the noise is white, all force but the damping has a potential, and g is g(x)."""
+    """Whether noise is white, all forces but damping have potentials, and g depends on x alone."""
     return (
         scene.state == ("y", "x")
         and scene.noise.kind == "white"
@@ -74,7 +74,8 @@ def gibbs_ordinates(scene: Scene, ends: dict, level: int) -> PlaneOrdinates:
         generator[parity] = sp.block_array(blocks, format="csr")[order][:, order].tocsc()
         start[parity] = np.hstack(row)[0][order]
     way = math.sqrt((masses[0] @ g[0] ** 2) / masses[0].sum()) / scene.damping
-    ones = (order < len(nodes[0])).astype(float)  # the order of EVEN, the last
+    # `order` is that of EVEN, the last parity of the loop
+    ones = (order < len(nodes[0])).astype(float)
     speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
     return PlaneOrdinates(speeds, ones, way, size - len(speeds), generator, start)
 
@@ -218,7 +219,7 @@ def _half(matrix, parity):
 
 
 def _kept(g, masses, near):
-    """Find the nodes that carry the mean of |g|, and moving ones no farther than the start."""
+    """Find the nodes that carry the mean of |g|, and those with g != 0 up to the start."""
     flow = np.abs(g) * masses
     order = np.argsort(flow)
     carrying = np.cumsum(flow[order]) > tuning.PLANE_ORDINATES.dropped * flow.sum()

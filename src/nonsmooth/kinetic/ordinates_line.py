@@ -149,7 +149,7 @@ def ordinates(
     masses = axis.weights * density
     total = masses.sum()
     g = vectorised(scene.numerical_observable(), (symbols.y,))(axis.nodes)
-    g = np.where(np.abs(g) < 1e-13 * np.max(np.abs(g)), 0.0, g)  # the rest is rounding of a zero
+    g = np.where(np.abs(g) < 1e-13 * np.max(np.abs(g)), 0.0, g)  # so small a g is a rounded zero
     stiffness = _stiffness(axis, degree, density) * scene.noise.sigma**2 / 2 / total
     masses = masses / total
     row = axis.interpolation(scene.start.get("y", 0.0)).toarray()[0]

@@ -1,11 +1,11 @@
 """A start far in the tails: how the velocity falls from there to the bulk.
 
 Functions on the grids of `ordinates_line` are weighted by the invariant density. Far in the tails,
-where this density is below the rounding error of the modes, they have no digits. But from there the
-velocity first falls to a level near the bulk, and g keeps its sign on the way, so that int g moves
-towards one wall only (`tail_equation`). While y stays where drift and g are linear, (y, int g) is
-even normally distributed, in closed form. That first part is also the one in which paths are almost
-deterministic, which makes Laplace transforms hard to invert.
+where this density is below the rounding error of the modes, they have no correct digits. But from
+there the velocity first falls to a level near the bulk, and g keeps its sign on the way, so that
+int g moves towards one wall only (`tail_equation`). While y stays where drift and g are linear,
+(y, int g) even has a normal law in closed form. In this first part of the way paths are almost
+deterministic, which would make a Laplace transform hard to invert.
 """
 
 import math
@@ -48,7 +48,7 @@ class Tail:
     kinks : numpy.ndarray
         Velocities beyond the level at which drift or g may have a kink.
     floor : float
-        The last such velocity below the level.
+        The largest such velocity up to the level, 0 if there is none.
     lines : tuple or None
         (value at 0, slope) of drift and of |g| beyond the floor; None if they are not linear.
     """
@@ -74,17 +74,17 @@ class Tail:
     def flight(self) -> float:
         """Time until which y stays above the floor, so that (y, int g) is normal; 0 if it never is.
 
-        "Stays" up to a probability of 1e-10.
+        Paths leave earlier with a probability of about 1e-10.
         """
         return self._above(self.floor)
 
     @cached_property
     def descent(self) -> float:
-        """Time until which y stays above the level, at most `flight`; 0 as there."""
+        """Time until which y stays above the level, at most `flight`; 0 if that is 0."""
         return self._above(self.level)
 
     def _above(self, velocity):
-        """Time until which y stays above a velocity while all is linear."""
+        """Time until which y stays above a velocity, if drift and g are linear down to there."""
         if self.lines is None:
             return 0.0
         spreads = tuning.TAIL_DESCENT.spreads
@@ -93,7 +93,7 @@ class Tail:
         times = np.log1p(fall) / rate * np.linspace(0, 1, tuning.TAIL_DESCENT.times)[1:]
         laws = [self.law(t) for t in times]
         near = [law.mean[0] - velocity < spreads * math.sqrt(law.covariance[0, 0]) for law in laws]
-        first = near.index(True)  # at the last time the mean arrives, so there is one
+        first = near.index(True)  # there is one, because at the last time the mean has arrived
         return float(times[first - 1]) if first else 0.0
 
     def law(self, time: float) -> "NormalLaw":

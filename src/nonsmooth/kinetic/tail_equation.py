@@ -124,7 +124,7 @@ class _Grid:
         self._band, self._entering = _band(generator[1:, 1:], degree), generator[1:, 0]
         self.stages, matrix = radau(settings.stages)
         self._shifts, self._vectors = np.linalg.eig(np.linalg.inv(matrix))
-        # if nothing moves, the end of a step has the stationary solution, which is wanted
+        # if nothing moves, the stationary solution is wanted, which the end of a step has
         place = np.clip(length - ways, 0.0, length) / width if length > 0 else np.ones(len(ways))
         where = np.minimum(place.astype(int), self.count - 1)
         within = lagrange(2 * np.append(0.0, self.stages) - 1, 2 * (place - where) - 1)[0]
@@ -228,9 +228,9 @@ def radau(stages: int) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=16)
 def reach(tail: Tail) -> float:
-    """Way int |g| to the level that is exceeded with a probability of exp(-30) at most.
+    """Bound the way int |g| on the descent to the level, up to a probability of exp(-30).
 
-    By Chernoff's bound with u(y) = E exp(theta int |g|), which solves A u + theta |g| u = 0.
+    This is Chernoff's bound with u(y) = E exp(theta int |g|), which solves A u + theta |g| u = 0.
 
     Parameters
     ----------

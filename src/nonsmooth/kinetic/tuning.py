@@ -9,19 +9,20 @@ class LineOrdinates:
     """Elements of one state variable."""
 
     depth: float = 40.0  # derived: the grid ends where m has fallen by exp(-40), below rounding
-    steepest: float = 12.0  # chosen: log of the ratio of the densities at the ends of an element
+    steepest: float = 12.0  # chosen: largest log of the ratio of densities at an element's ends
     grading: float = 3.0  # chosen: widest element over its distance to a zero of g or the start
-    # both relative to the lesser of the standard deviation of y and of sigma sqrt(t)
+    # `finest` and `at_start` are relative to the lesser of the deviation of y and sigma sqrt(t)
     finest: float = 0.1  # chosen: width at a zero of g; the error is of the order of its cube
     at_start: float = 1.0  # chosen: width at the start, where the solution is smooth
     crossing: float = 3.0  # chosen: widest element over the spread of velocities of the paths
     #                        that go straight to a wall
-    digits: float = 26.0  # derived: nearer than this depth to the end of the grid fewer digits
-    #                       count, for exp(-26) = 5e-12; elements are wider there, ...
-    rarest: float = 0.1  # chosen: ... but at most 1/rarest times
-    reach: float = 12.0  # derived: sigma sqrt(t) times it is exceeded with probability exp(-72)
-    long_time: float = 1e3  # chosen: in units of 1/C_b; beyond, the grid does not depend on it
-    shrink: float = 0.98  # chosen: factor by which the end of the grid is sought
+    # derived: where the density is less than exp(26) = 2e11 times that at the end of the grid,
+    # fewer digits matter, and elements are wider by 26 over the logarithm of this ratio ...
+    digits: float = 26.0
+    rarest: float = 0.1  # chosen: ... but at most 1/rarest times as wide
+    reach: float = 12.0  # derived: deviations beyond the start; exceeded with probability exp(-72)
+    long_time: float = 1e3  # chosen: time unless given, in units of 1/C_b; so long as not to matter
+    shrink: float = 0.98  # chosen: factor by which the axis is shortened until it ends at `deepest`
     probed: int = 4001  # chosen: points of the sums that give the spread of the velocity
     searched: int = 501  # chosen: points between which sign changes of g are looked for
     cut: float = 0.3  # chosen: place at which an element is cut whose one end is a zero of g
@@ -31,10 +32,11 @@ class LineOrdinates:
 class CaseModes:
     """Eigenvalue problems of the elementary solutions."""
 
-    rounding: float = 1e-12  # chosen: squared decay lengths below it, relative, are rounding
-    separated: float = 30.0  # chosen: slow eigenvalue over the others, from which it is split off
-    powers: int = 12  # derived: steps of the power method, separated^-12 is below rounding
-    directed: float = 0.1  # chosen: relative flux of a mode that surely belongs to one wall
+    # chosen: squared decay lengths below this, relative to the largest, are taken to be rounding
+    rounding: float = 1e-12
+    separated: float = 30.0  # chosen: slow eigenvalue over the others from which it is split off
+    powers: int = 12  # derived: steps of the power method; separated^-12 is below rounding
+    directed: float = 0.1  # chosen: relative flux from which it tells the wall of a mode
 
 
 class PlaneLevel(NamedTuple):
@@ -76,8 +78,9 @@ class PlaneOrdinates:
     coarsest: float = 9.0  # chosen: the half axis over the finest element, if noise drives g, ...
     fast: float = 1.5  # chosen: ... which is at most so many sigma sqrt(t)
     in_wall: tuple[float, ...] = (0.125, 0.35)  # chosen: edges inside a wall, over its depth
-    beside_knot: tuple[float, float] = (2.0, 64.0)  # chosen: depth of the kink over the largest
-    #                           and over the finest element beside it, if g is the penalty force
+    # chosen: position of the kink over the largest and over the finest element beside it, if g is
+    # the penalty force
+    beside_knot: tuple[float, float] = (2.0, 64.0)
     dropped: float = 1e-5  # chosen: share of E |g| at nodes that are taken to stand still
 
 
@@ -129,14 +132,15 @@ class AddingDoubling:
 class TailDescent:
     """The way of the velocity from a far start to the bulk."""
 
-    level: float = 8.0  # chosen: the bulk begins where m has fallen by exp(-8); the modes of
-    #                     `case_modes` are good there, and a fall ends there soon
+    # chosen: the bulk begins where m has fallen by exp(-8); the modes of `case_modes` are accurate
+    # there, and the velocity falls to there in a short time
+    level: float = 8.0
     spreads: float = 6.5  # derived: a normal variable is farther out with probability 8e-11
     points: int = 48  # chosen: Gauss points of a normal law in each direction, exact to rounding
     probed: int = 2001  # chosen: points at which the sign and the slope of g are looked at
-    linear: float = 1e-12  # derived: relative deviation from a line that is rounding
+    linear: float = 1e-12  # derived: relative deviations from a line up to this are rounding
     times: int = 401  # chosen: times among which the end of the descent is sought
-    series: float = 1e-2  # derived: below it the variance is a series, whose next term is 1e-12
+    series: float = 1e-2  # derived: below it a series gives the variance; its next term is 1e-12
     rate: float = 3.0  # chosen: safety of the rate at which the solution changes at the level
 
 
@@ -146,8 +150,8 @@ class TailEquation:
 
     unlikely: float = 30.0  # derived: ways exceeded with probability exp(-30) are left out
     stages: int = 5  # chosen: of the Radau IIA method, of order 9
-    turn: float = 5.0  # chosen: phase by which exp(-z t) turns in a step, times the degree
-    rotation: float = 40.0  # chosen: phase by which it turns within an element
+    turn: float = 5.0  # chosen: largest |z| t of a step, t its duration, times the degree
+    rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
     width: float = 0.9  # chosen: of elements, over the spread of velocities on the way down
     beyond: float = 4.0  # derived: spreads of y by which the grid goes beyond the start
     coarse: int = 7  # chosen: degree of the bound of the longest way

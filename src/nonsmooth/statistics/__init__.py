@@ -1,7 +1,7 @@
 """Long-time statistics: what the state and int g settle to.
 
-By Theorem thm3 the variance of int_0^t g grows as gamma^2 t. Each quantity has one public function,
-which chooses between methods by the scene and the tolerance.
+By Theorem 6 of the paper the variance of int_0^t g grows like gamma^2 t. Each quantity has one
+public function, which chooses between methods by the scene and the tolerance.
 
 - `asymptotic_variance.asymptotic_variance`: gamma^2, and `stationary_mean` of g
 - `variance.variance`: mean and variance of int_0^tau g over finite times

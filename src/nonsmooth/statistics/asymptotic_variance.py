@@ -1,4 +1,7 @@
-"""The asymptotic variance gamma^2 of Theorem thm3, by the method that a tolerance calls for."""
+"""The asymptotic variance gamma^2 of Theorem 6 of the paper.
+
+The method is chosen by the scene and the tolerance.
+"""
 
 import time
 
@@ -20,18 +23,18 @@ def asymptotic_variance(
     seed: int | tuple = 0,
     threads: int | None = None,
 ) -> Estimate:
-    """gamma_g^2 of Theorem thm3: the rate at which the variance of int_0^t g grows with t.
+    """gamma_g^2 of Theorem 6 of the paper: the rate at which the variance of int_0^t g grows.
 
     Parameters
     ----------
     scene : Scene
     tol : float, optional
-        Requested relative error; unless given, 1e-10, 1e-6, 2e-4, 1e-2 for one to four state
-        variables, the last by Monte Carlo, as everywhere by that method; 3e-3 if the deterministic
-        one is asked for with four.
+        Requested relative error. Unless given, it is 1e-2 by Monte Carlo, and by the deterministic
+        method 1e-10, 1e-6, 2e-4 or 3e-3 for one to four state variables.
     method : {"deterministic", "monte_carlo"}, optional
-        Unless given, the one that should be the faster for `tol` and, if that fails and `tol` is
-        a percent or more, the other.
+        Unless given, the one that should be the faster for `tol`; with four variables and no
+        `tol`, Monte Carlo. If it fails, the other method is tried, but Monte Carlo only if `tol`
+        is a percent or more.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 

@@ -1,8 +1,8 @@
-"""gamma^2 = 2 E[g u] with u the Poisson solution of g (Theorem 6), on tensor grids.
+"""gamma^2 = 2 E[g u] with u the Poisson solution of g (Theorem 6 of the paper), on tensor grids.
 
-For two variables the grids are refined in both of them first, which is the cheapest if few levels
-do. Otherwise, and for more variables, the combination technique finds out how fine each variable
-must be; what the grids beyond those combined would add is the error.
+With two variables, both are first refined together, which is cheapest if few levels are enough.
+Otherwise, and with more variables, the combination technique finds out how finely each variable
+must be resolved. Its error is what the grids beyond those combined would add.
 """
 
 import math
@@ -119,8 +119,8 @@ def gamma2_by_combination(scene: Scene, tol: float) -> tuple[float, float]:
     Returns
     -------
     value, error : float
-        The error is what grids beyond those combined may add, see `Combination.error`, and what
-        the box, the residuals and n change.
+        The error is what grids beyond those combined may add (`Combination.error`), plus the
+        effects of the finite box, of the residuals and of a finite n.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def gamma2_by_combination(scene: Scene, tol: float) -> tuple[float, float]:
 
 
 def _combined(scene, tol):
-    """gamma^2, its error, the dearest of the combined grids, and the residual."""
+    """Return gamma^2, its error, the costliest of the combined grids, and the residual."""
     chosen, count = tuning.GAMMA2_ON_GRIDS, scene.dimension
     coarse = fitted(scene, depth_for(tol), chosen.fitted[count])
     coarse = coarse.all_raised(chosen.coarse[count] - chosen.fitted[count])
@@ -200,18 +200,20 @@ def _refuse(scene, grid, value, error, tol, accuracy):
 def _directions(grid):
     """Group the variables that are refined together.
 
-    Displacement and velocity are: transport mixes them, so that what they change together is no
-    smaller than what one of them changes. The variables of the noise are refined one by one.
+    Displacement and velocity are. The motion mixes them: what refining both changes beyond the sum
+    of the changes by either is not small, as the combination technique needs it to be. The
+    variables of the noise are refined one by one.
     """
     noise = [(symbol,) for symbol in grid.levels if symbol not in (y, x)]
     return [*noise, tuple(symbol for symbol in grid.levels if symbol in (y, x))]
 
 
 def _on_coarsest(scene, grid, tol):
-    """gamma^2 on a grid, the residual that it needs, and what that leaves of relative error.
+    """Return gamma^2 on a grid, the residual it needs, and the relative error this leaves.
 
-    The norm of a residual says little about the error: it is largest where there is no mass, and
-    may stagnate there. So the residual is reduced until gamma^2 no longer changes.
+    The norm of a residual says little about the error: the residual is largest where the invariant
+    measure has hardly any mass, and may stagnate there. So it is reduced until gamma^2 no longer
+    changes.
     """
     chosen = tuning.GAMMA2_ON_GRIDS
     accuracy = tol * chosen.residual
@@ -223,7 +225,8 @@ def _on_coarsest(scene, grid, tol):
         lambda found: abs(found[-1][0] - found[-2][0]) / abs(found[-1][0]),
         met=lambda _, change: change <= chosen.iteration * tol,
     )
-    value, accuracy = refined.solutions[-2]  # that the last changed so little shows it good enough
+    # the smaller residual changed so little that the one before is good enough
+    value, accuracy = refined.solutions[-2]
     return value, accuracy, max(2 * refined.error, accuracy)
 
 

@@ -1,4 +1,4 @@
-"""The invariant density of Z^n (Theorem 4) and its marginals, without Monte Carlo.
+"""The invariant density of Z^n (Theorem 4 of the paper) and its marginals, without Monte Carlo.
 
 Dry friction and obstacles with white noise have closed forms. Elsewhere the masses of the
 discretised invariant measure at the nodes of a tensor grid are divided by the nodes' weights.
@@ -38,8 +38,8 @@ def invariant_density(
     scene : Scene
         With a finite n: at n = inf mass concentrates on sets of measure zero.
     tol : float, optional
-        Error allowed, relative to the largest value of each density; by the number of variables
-        1e-8, 1e-6, 1e-2, 5e-2 unless given.
+        Error allowed, relative to the largest value of each density. Unless given, it is 1e-8,
+        1e-6, 1e-2 or 5e-2 for one to four variables.
     points : dict, optional
         Maps names of variables to points at which the densities are wanted; 201 equidistant ones
         over the support unless given.
@@ -48,9 +48,9 @@ def invariant_density(
     -------
     xarray.Dataset
         `density_y` and so on over the points of each variable, and the joint density of the last
-        two variables of the state, `density_y_x` or `density_eta_y`; each with its error
-        (`density_y_error`), the largest difference between two grids. Dry friction and obstacles
-        with white noise have closed forms, of which it is the error of the normalisation.
+        two variables of the state, `density_y_x` or `density_eta_y`. Each has an error
+        (`density_y_error`), the largest difference between two grids. Where there is a closed form
+        (dry friction and obstacles with white noise), it is the error of the normalisation.
 
     Raises
     ------
@@ -159,9 +159,9 @@ def closed_form(scene: Scene) -> dict[str, Callable]:
     Returns
     -------
     dict
-        Name -> function of points that returns values and errors. For a velocity alone with white
-        noise, by quadrature; for obstacles with white noise, of the Gibbs measure
-        exp(-2 C_b/sigma^2 (y^2/2 + U_n(x))); empty for all other scenes.
+        Name -> function of points that returns values and errors. A velocity alone with white
+        noise has a density by quadrature; obstacles with white noise have the Gibbs measure
+        exp(-2 C_b/sigma^2 (y^2/2 + U_n(x))). The dict is empty for all other scenes.
     """
     if scene.is_line:
         return {"y": lambda y: quadrature.density(scene, y)}
@@ -198,8 +198,8 @@ def bin_averages(
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Invariant probabilities of bins, divided by their widths: what a histogram estimates.
 
-    Where friction or a wall concentrates the density, averages converge on grids on which its
-    values at points do not.
+    Where friction or a wall concentrates the density, averages over bins have converged already on
+    grids on which the values at points have not.
 
     Parameters
     ----------
@@ -264,7 +264,10 @@ def _cuts(scene, name):
 
 
 def _averaging(edges, cuts, count):
-    """Points, and the matrix that takes values there to averages over bins, cut at kinks."""
+    """Return quadrature points, and the matrix that turns values there into averages over bins.
+
+    Bins are cut at kinks of the density, so that the quadrature converges in each piece.
+    """
     nodes, gauss = leggauss(count)
     inside = cuts[(cuts > edges[0]) & (cuts < edges[-1])]
     pieces = np.unique(np.concatenate([edges, inside]))
@@ -294,7 +297,7 @@ def densities_on(
     points : dict
         Maps names to points.
     accuracy : float
-        Residual of the solver, of which a direct one takes no notice.
+        Residual of an iterative solver; a direct one ignores it.
 
     Returns
     -------

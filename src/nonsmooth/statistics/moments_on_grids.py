@@ -7,7 +7,7 @@ With -A u = g - E g and -A h = 2 (g - E g) u - gamma^2, and P the semigroup of A
 
 so that errors do not grow with tau. A is not sectorial, so that integrals of its resolvent along a
 contour are of little use. Instead the pair (k, r) is projected, in L^2 of the invariant measure, on
-a rational Krylov space, whose poles are real and cost one factorisation each. The pole 0 is the
+a rational Krylov space. Its poles are real and cost one factorisation each. The pole 0 is the
 Poisson solver and resolves the slowest modes; the others resolve early times.
 """
 
@@ -47,14 +47,15 @@ def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np
     -------
     moments, errors : numpy.ndarray, shape (2, t)
         w and v. The errors are those of `uniform_refinement.refined`. Where that fails, they are
-        what the last refinement of the grid changes or, if larger, the sum of what each variable
-        changes for itself, and the errors of the box and of the projection. Errors oscillate with
-        tau: each is relative to tau the largest between tau / 2 and 2 tau.
+        the change by the last refinement of all variables or, if larger, the sum of the changes by
+        refining each variable alone, plus the errors of the box and of the projection. Errors
+        oscillate with tau. So the stated error, divided by tau, is the largest that any time
+        between tau / 2 and 2 tau has, divided by that time.
 
     Raises
     ------
     ToleranceError
-        If no projection is stable.
+        If no projection is stable: modes grow in all of them.
     """
     wanted, times = times, _with_neighbours(times)
     scale = np.where(times > 0, times, 1.0)
@@ -86,10 +87,10 @@ def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np
 
 
 def _refined(scene, grid, solve, share):
-    """Refine the variables that matter; return what comes closest to the tolerance, and its error.
+    """Refine the variables that matter, as far as that is affordable; return values and errors.
 
-    Which variables the next grid raises depends on what each changes on this one, so that the
-    grids are no sequence known beforehand.
+    Which variables are refined next depends on the changes by refining each of them alone. So the
+    grids are not known beforehand, as they are in `refine.until_agreement`.
     """
     gain = grid_tuning.UNIFORM_REFINEMENT.gain
     value, inexact = solve(grid)
@@ -111,7 +112,10 @@ def _refined(scene, grid, solve, share):
 
 
 def _with_neighbours(times):
-    """Sort times and add some between half of the smallest and twice the largest positive one."""
+    """Sort times and add some, from half of the smallest to twice the largest positive one.
+
+    Errors oscillate with time and are sampled at the times that are added.
+    """
     positive = times[times > 0]
     if not len(positive):
         return np.unique(times)
@@ -121,7 +125,7 @@ def _with_neighbours(times):
 
 
 def first_grid(scene: Scene, tol: float) -> Grid:
-    """Return the coarsest grid, whose box holds the invariant density and the starting point."""
+    """Return the coarsest grid. Its box holds the invariant density and the starting point."""
     chosen = tuning.MOMENTS_ON_GRIDS
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     ends = {
@@ -154,7 +158,7 @@ def moments_on(
     Returns
     -------
     moments, changes : numpy.ndarray, shape (2, t)
-        w and v, and what the last Krylov vectors change in them; nan if no projection is stable.
+        w and v, and their changes by the last Krylov vectors; nan if no projection is stable.
     """
     axes, solver = tensor_grid.direct_solver(scene, grid)
     g = solver.fold(evaluate(scene.numerical_observable(), axes))
@@ -240,7 +244,10 @@ class _Krylov:
 
 
 def _evolve(solver, slow, fast, g, start, gamma2, times, at):
-    """Find w and v from the projected equations of k (`slow`) and r (`fast`); None if they grow."""
+    """Find w and v from the projected equations of k (`slow`) and r (`fast`).
+
+    Return None if these have solutions that grow.
+    """
     k0, r0 = slow.dot(start[0]), fast.dot(start[1])
     many = len(k0)
     matrix = np.zeros((many + len(r0) + 1,) * 2)
@@ -263,7 +270,7 @@ def _grows(matrix):
 
 
 def at_start(scene: Scene, axes: dict[Symbol, Axis]) -> Callable:
-    """Return what evaluates functions at the starting point.
+    """Return the function that evaluates others at the starting point.
 
     Parameters
     ----------
@@ -281,7 +288,8 @@ def at_start(scene: Scene, axes: dict[Symbol, Axis]) -> Callable:
     def at(solver, rows, parity):
         if not solver.mirrored:
             return rows @ start
-        whole = (start + parity * mirrored) / 2  # on faces, the mean of both sides
+        # where the start lies on a face between elements, this is the mean of both sides
+        whole = (start + parity * mirrored) / 2
         half = rows.shape[1]
         return rows @ (whole[:half] + parity * whole[half:][::-1])
 

@@ -1,7 +1,7 @@
 """gamma^2 by Monte Carlo, for every scene: the slope of the variance of int_0^t g.
 
-Var D(t) = gamma^2 t + const + an exponentially small rest, D(t) = int_0^t g. The slope between
-two times is therefore free of the constant, which Var D(t) / t is not.
+With D(t) = int_0^t g, Var D(t) = gamma^2 t + constant + an exponentially small rest. The slope of
+Var D between two times is free of the constant; Var D(t) / t is not.
 """
 
 import math
@@ -124,7 +124,8 @@ def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tup
     Returns
     -------
     bias, error : float
-        The error is that of two independent variances, which is larger than that of the slope.
+        The error is computed as if the variances at both times were independent, which makes it
+        larger than the slope's own.
     """
     change, _ = coupled(scene, [times[0], times[-1]], sampling)
     bias, error = step_bias(change, registry.scheme(scene, sampling.scheme).weak_order(scene))
@@ -135,7 +136,7 @@ def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tup
 def sampled_gamma2(
     scene: Scene, tol: float, seed: int | tuple = 0, threads: int | None = None
 ) -> tuple[float, float]:
-    """Sample gamma^2 with as many paths and as short a step as a tolerance takes.
+    """Sample gamma^2 with as many paths and as short a step as a tolerance needs.
 
     Parameters
     ----------
@@ -212,11 +213,14 @@ def _short_step(scene):
 
 
 def _first_times(scene):
-    """Choose the first times of the slope, no shorter than the memory of the drift."""
+    """Choose the times between which the slope is first taken.
+
+    They are longer if the drift relaxes slowly.
+    """
     settled = tuning.SAMPLED_GAMMA2
     try:
         rate = rate_at_infinity(scene.with_n(min(scene.n, settled.soft))).value / 2
-    except SceneError:  # The drift is not linear far out. Then `_settled` has to find the times.
+    except SceneError:  # The drift is not linear far from 0. `_settled` has to find the times.
         return settled.times
     first = settled.times[0]
     return tuple(max(1.0, settled.relaxed / (rate * first)) * t for t in settled.times)
@@ -225,8 +229,8 @@ def _first_times(scene):
 def _settled(scene, sampling):
     """Lengthen the times until the slope of the variance depends neither on them nor on the start.
 
-    Paths that never leave the well they start in settle too, on the wrong slope. A few paths from
-    each well of the potentials, the scouts, have to agree.
+    Paths that never leave the well they start in settle, too, but on the wrong slope. To notice
+    this, a few paths start from each well of the potentials (the scouts); all slopes have to agree.
     """
     elsewhere = [scene.with_start(start) for start in potential_wells.starts(scene)]
     times = _first_times(scene)

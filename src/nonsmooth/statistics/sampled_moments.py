@@ -24,7 +24,9 @@ def sampled_moments(
     threads: int | None = None,
     most: float = MONTE_CARLO.most_steps,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Simulate w and v of `statistics.variance`; pilots choose the sizes.
+    """Sample w and v of `statistics.variance`.
+
+    Each attempt chooses the number of paths and the step of the next, until the tolerance is met.
 
     Parameters
     ----------
@@ -36,7 +38,8 @@ def sampled_moments(
     seed : int or tuple
     threads : int, optional
     most : float
-        Steps of all paths together, beyond which it is not tried.
+        Largest number of steps of all paths together. If more are needed, this raises an error
+        instead of trying.
 
     Returns
     -------

@@ -1,4 +1,7 @@
-"""The spectral gap of the generator, the rate at which correlations decay (Theorem 5)."""
+"""The spectral gap of the generator, the rate at which correlations decay.
+
+Theorem 5 of the paper says that there is such a rate.
+"""
 
 import math
 import time
@@ -32,9 +35,10 @@ def spectral_gap(scene: Scene, tol: float = 1e-6) -> Estimate:
     Returns
     -------
     Estimate
-        The error is the difference of two grids, what the edge of the box does, and rounding. If
-        three grids converge, it is the difference of the last two times the root of the larger of
-        the last two factors by which differences fall: errors fall by such a factor, too.
+        The error is the difference between two grids, plus the effect of the finite box, plus
+        rounding. From three grids on, the difference is multiplied by the square root of the factor
+        by which differences shrink (the larger of the last two such factors, at most 1), because
+        errors shrink like differences.
 
     Raises
     ------
@@ -72,7 +76,10 @@ def spectral_gap(scene: Scene, tol: float = 1e-6) -> Estimate:
 
 
 def _of_level(found):
-    """Error of the last of several rates, each with its rounding error, but for that of the box."""
+    """Return the error of the last of several rates, without that of the box.
+
+    Each rate comes with its rounding error.
+    """
     changes = [
         max(abs(fine - coarse), rounding) for (coarse, _), (fine, rounding) in pairwise(found)
     ]
@@ -81,8 +88,8 @@ def _of_level(found):
 
 
 def _with_one_variable(scene):
-    """Levels, what solves on a level, and the error of the box, which is none."""
-    scene = scene.with_start({})  # where the mesh need not reach out to the starting point
+    """Return the levels, the solver of a level, and the error of the box, which is 0 here."""
+    scene = scene.with_start({})  # so that the mesh need not reach out to the starting point
 
     def solve(degree):
         rate = float(eigenfunctions.spectrum(scene, degree).rates[1])
@@ -92,16 +99,16 @@ def _with_one_variable(scene):
 
 
 def _with_two_variables(scene: Scene, tol: float) -> tuple[Iterable, Callable, Callable]:
-    """Levels, what solves on a level, and the error of the box."""
+    """Return the levels, the solver of a level, and what measures the error of the box."""
     chosen = tuning.SPECTRAL_GAP
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), chosen.fitted)
-    unseen = iter(range(chosen.finest + 1))  # on which the effect of the box was not measured
+    unseen = iter(range(chosen.finest + 1))  # levels on which no larger box has been tried yet
 
     def solve(level):
         return gap_on(scene, grid.at_level(level), chosen.iteration * tol)
 
     def box(found, own, allowed):
-        """Measure what the box does on coarse levels; on finer ones while that is too much."""
+        """Measure the effect of the box on a coarse level, and on finer ones if it is too large."""
         while True:
             level = next(unseen)
             wider, _ = gap_on(scene, grid.at_level(level).enlarged(), chosen.iteration * tol)
@@ -115,7 +122,7 @@ def _with_two_variables(scene: Scene, tol: float) -> tuple[Iterable, Callable, C
 def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     """Compute the slowest rate on one grid.
 
-    -A is inverted on functions modulo constants, odd and even ones apart.
+    -A is inverted on functions modulo constants, separately for odd and for even ones.
 
     Parameters
     ----------
@@ -138,7 +145,7 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
             (size, size), lambda values, parity=parity: solver.solve(values, parity)[0], dtype=float
         )
         start = np.cos(np.arange(size))  # the same in every run
-        # the slowest of those wanted is known far better than the fastest
+        # the iteration finds the slowest rate far more accurately than the other ones
         largest = spla.eigs(inverse, k=wanted, v0=start, tol=accuracy, return_eigenvectors=False)
         rates = 1 / largest[np.abs(largest) > 1e-12]
         slowest.append(min((rate.real, _moved(rates, rate)) for rate in rates))
@@ -147,7 +154,7 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
 
 
 def _moved(rates, rate):
-    """Bound how far rounding moves an eigenvalue: the farther, the closer it is to another one."""
+    """Bound how far rounding moves an eigenvalue; this is more if another one is close to it."""
     chosen = tuning.SPECTRAL_GAP
     gap = np.sort(np.abs(rates - rate))[1] / abs(rate)
     return abs(rate) * (chosen.rounding + chosen.backward / max(gap, math.sqrt(chosen.backward)))

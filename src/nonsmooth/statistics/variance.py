@@ -24,7 +24,7 @@ def variance(
     seed: int | tuple = 0,
     threads: int | None = None,
 ) -> xr.Dataset:
-    """Mean w(start, tau) and variance v(start, tau) of int_0^tau g - E g (eq. defvgyt).
+    """Mean w(start, tau) and variance v(start, tau) of int_0^tau g - E g, eq. (36) of the paper.
 
     Parameters
     ----------
@@ -32,12 +32,13 @@ def variance(
     times : array_like, shape (t,)
         tau >= 0, "1"; by Monte Carlo increasing and positive.
     tol : float, optional
-        Requested absolute error of v(tau)/tau; unless given, 1e-9 for one state variable, 1e-5 for
-        two and 1e-2 by Monte Carlo.
+        Requested absolute error of v(tau)/tau. Unless given, it is 1e-2 by Monte Carlo, and by the
+        deterministic method 1e-9 for one state variable and 1e-5 for two.
     method : {"deterministic", "monte_carlo"}, optional
-        ``"deterministic"`` is for the state y with white noise, or two state variables and a
-        finite n. Unless a method is given, it is taken there, but for two variables where `tol` is
-        so loose that a few paths do; ``"monte_carlo"`` elsewhere.
+        ``"deterministic"`` is possible for the state y with white noise, and for two state
+        variables and a finite n. Unless a method is given, it is taken for these scenes, except
+        for two variables and a `tol` so loose that a few paths are enough. ``"monte_carlo"`` is
+        taken for all others.
     seed, threads
         Of Monte Carlo: int or tuple; all cores unless given.
 
@@ -46,7 +47,7 @@ def variance(
     xarray.Dataset
         `w`, `v` and their errors `w_error`, `v_error` over `time`, with the method among the
         attributes. One variable is solved by an eigenfunction expansion, two by
-        `moments_on_grids.moments`; the errors are what the last refinement changes, and rounding.
+        `moments_on_grids.moments`; the errors are the changes by the last refinement, and rounding.
         By Monte Carlo they are the bias of the time step and the standard error together; `tol`
         bounds the bias and three standard errors.
 
@@ -98,7 +99,7 @@ def _dataset(times, found, error, method):
 
 
 def _solver(scene: Scene) -> Callable | None:
-    """Choose what solves for w and v, of (scene, times, tol); None if there is nothing."""
+    """Choose the function of (scene, times, tol) that solves for w and v; None if there is none."""
     if scene.is_line:
         return _of_velocity
     if scene.dimension == 2 and not math.isinf(scene.n) and "y" in scene.state:
@@ -109,8 +110,9 @@ def _solver(scene: Scene) -> Callable | None:
 def _of_velocity(scene, times, tol):
     """Solve for w and v, with errors, for the state y alone with white noise.
 
-    The change by the last rise of the polynomial degree is the error of the coarser solution, which
-    convergence in the degree makes far larger than that of the finer one; rounding is added.
+    The stated error is the change when the polynomial degree was last raised. It is the error of
+    the solution of lower degree, and far above that of the other, because convergence in the degree
+    is fast. Rounding is added.
     """
     degrees = tuning.VARIANCE.degrees
     allowed = np.array([np.full_like(times, np.inf), tol * np.where(times > 0, times, 1.0)])
