@@ -30,7 +30,7 @@ def test_public_functions_are_annotated_and_documented(name):
 
 
 def test_the_docstring_names_everything_public():
-    """And everything public is what the type checker sees, in `__init__.pyi`."""
+    """The docstring and `__init__.pyi`, which type checkers see, name everything public."""
     for name in ns.__all__:
         assert f"`{name}`" in ns.__doc__, name
         assert inspect.getdoc(getattr(ns, name)), name

@@ -19,7 +19,7 @@ def test_powers_of_p_are_found():
 
 
 def test_a_power_needs_two_distances():
-    """Too few are resolved, or none are at p large enough."""
+    """The error says that too few are resolved, or none at a p that is large enough."""
     known = KNOWN.copy()
     known[2, 1:] = False
     with pytest.raises(CheckError, match="'order 2' is resolved at fewer than two"):
@@ -29,7 +29,7 @@ def test_a_power_needs_two_distances():
 
 
 def test_an_error_above_the_stated_one_is_refused():
-    """Of the corrected formulas; the plain one states none."""
+    """So it is for the corrected formulas; the plain one states no error."""
     off = np.zeros((*KNOWN.shape, 1))
     off[list(FORMULAS).index(ASYMPTOTIC)] = 1.0
     check_stated_errors(P, off, np.full(off.shape, 0.1))

@@ -15,7 +15,7 @@ def sampled(gamma2, bias=0.01):
 
 
 def test_deviation_is_that_less_the_bias():
-    """In standard errors of both together."""
+    """It is given in standard errors of both methods together."""
     plain, cells = compared("friction", Scene("friction"), SOLVED, sampled(0.52))
     assert plain["deviation"] == pytest.approx(2)
     assert plain["monte_carlo_corrected"] == pytest.approx(0.51)

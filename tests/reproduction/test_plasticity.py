@@ -23,7 +23,7 @@ def test_the_deformation_is_the_displacement_less_the_elastic_part():
 
 
 def test_bad_parameters_are_refused():
-    """By the scene and its noise."""
+    """Parameters that make no scene or no noise are refused in one line."""
     with pytest.raises(SceneError, match="stiffness > 0"):
         yielding_oscillator(GROUND | {"stiffness": -1.0}, OSCILLATOR)
     with pytest.raises(SceneError, match="damping > 0"):

@@ -45,7 +45,7 @@ def test_gamma2_of_dry_friction_is_of_second_order():
 
 
 def test_time_scales():
-    """Of a Brownian velocity, a relaxation, a contact."""
+    """They are those of a Brownian velocity, a relaxation and a contact."""
     scales = [
         contact_time(ns.Scene(model, noise, n=100, potential="x**2/2"))
         for model, noise in (

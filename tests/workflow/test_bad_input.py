@@ -22,7 +22,7 @@ def lines_with(run, text):
     ],
 )
 def test_bad_configuration(repository, setting, message):
-    """Refused before anything runs, in one line and nothing else."""
+    """It is refused before anything runs, in one line and nothing else."""
     run = repository.snakemake("--cores", "1", "--config", setting)
     assert run.returncode != 0
     assert len(lines_with(run, message)) == 1

@@ -114,7 +114,7 @@ def test_a_wrong_erratum_fails(monkeypatch, printed, mended):
 
 
 def test_a_violated_bound_fails(monkeypatch):
-    """Beyond rounding; claim S_4 as printed may."""
+    """It fails beyond rounding; claim S_4 may be violated as printed."""
     case = {"friction": ["x**2/2"]}, ["eta**2/2"], [1], [2]
     good = margins(Scene("friction", n=2, potential="x**2/2"), points=300)
     for change, fails in (
@@ -214,7 +214,7 @@ def exceedances(bias=1e-3, bias_error=1e-3):
 
 
 def test_differences_of_formulas_and_monte_carlo():
-    """Are what they were made to be; their errors have both parts."""
+    """They are what they were made to be, and their errors have both parts."""
     result = deformation(*exceedances())
     assert np.allclose(result["difference"], 0.1)
     parts = np.hypot(result["probability_error"], 2e-3)
@@ -271,6 +271,6 @@ def test_a_known_bias_is_allowed_for():
     ("shift", "message"), [(0.1, "simultaneous band"), (0.025, "95 % bands contain")]
 )
 def test_bands_beside_the_curves_fail(shift, message):
-    """By ten standard errors, and by two and a half, which few pointwise bands contain."""
+    """They fail by ten standard errors, and by 2.5, which few pointwise bands contain."""
     with pytest.raises(CheckError, match=message):
         containment(*bands(shift=shift))

@@ -13,7 +13,7 @@ RESULTS = (ROOT / "results" / "README.md").read_text(encoding="utf-8")
 
 
 def test_it_is_short():
-    """At most 900 words."""
+    """The README has at most 900 words."""
     assert len(README.split()) <= 900
 
 
@@ -45,7 +45,7 @@ def test_named_modules_exist():
 
 
 def test_every_artifact_is_listed(smoke_run):
-    """With all its variables; errors are beside them by a rule."""
+    """It is listed with its variables; their errors are beside them by a rule."""
     rows = dict(re.findall(r"^\| `([^`]+\.nc)` \| (.*) \|$", RESULTS, flags=re.MULTILINE))
     folder = smoke_run.folder / "results" / "smoke"
     for path in sorted(folder.rglob("*.nc")):

@@ -24,7 +24,7 @@ TABLES.append("speed_pde")
 
 
 def test_every_figure_and_table_is_there(smoke_run):
-    """In all their formats, and the paper."""
+    """They are there in all their formats, and so is the paper."""
     results = smoke_run.folder / RESULTS
     for name in FIGURES:
         assert (results / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
@@ -78,7 +78,7 @@ def test_the_numbers_of_the_text_come_from_artifacts(smoke_run):
 
 
 def test_table_4_has_the_printed_values_beside_ours(smoke_run):
-    """And ours rounds or truncates to the printed ones."""
+    """Our values round or truncate to the printed ones."""
     table = pd.read_csv(smoke_run.folder / RESULTS / "tables" / "table_4.csv").set_index("n")
     assert table.loc[2.0, "printed"] == 0.174466
     known = table["printed"].notna()
@@ -101,7 +101,7 @@ def test_table_6_has_its_scene_within_its_errors(smoke_run):
 
 
 def test_the_code_in_the_paper_runs(smoke_run):
-    """And gives the corrected formula's last probability, by another gamma^2 and kappa."""
+    """It gives the last probability of the corrected formula, by another gamma^2 and kappa."""
     results = smoke_run.folder / RESULTS
     code = json.loads((results / "paper" / "values.json").read_text())["plasticity"]["code"]
     lines = code.replace("tol=0.05", "tol=0.1").splitlines()
@@ -162,7 +162,7 @@ def test_typesetting_again_gives_the_same_bytes(smoke_run):
 
 
 def test_second_run_has_nothing_to_do(smoke_run):
-    """And says so."""
+    """It says so."""
     run = smoke_run.snakemake("--cores", "2")
     assert run.returncode == 0
     assert "Nothing to be done" in run.stdout + run.stderr

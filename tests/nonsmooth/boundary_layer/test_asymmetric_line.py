@@ -41,7 +41,7 @@ def test_cumulants(skewed):
 
 
 def test_limit_of_odd_g():
-    """Constants of an odd g, as its half grid has them, if an even part is added that vanishes."""
+    """As the even part of g vanishes, the constants tend to those of the odd g."""
     odd, _ = symmetric_line.layer_constants(ns.Scene("friction", n=1, start={"y": 0.5}))
     scene = ns.Scene("friction", n=1, observable="y + 1e-6*(abs(y) - 0.3)", start={"y": 0.5})
     mean = float(stationary_mean(scene)[0])

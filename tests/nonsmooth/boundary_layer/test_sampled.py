@@ -7,7 +7,7 @@ from references import FRICTION, KAPPA
 
 
 def test_kappa_of_dry_friction():
-    """Within the stated error, two standard errors and more; the seed is fixed."""
+    """The sampled kappa is the published one within the stated error; the seed is fixed."""
     found = sampled_kappa(FRICTION, seed=1)
     assert abs(found.value - KAPPA) < found.error
     assert found.error < 0.2 * found.value

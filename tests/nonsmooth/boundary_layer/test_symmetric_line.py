@@ -34,7 +34,7 @@ def test_kappa3_of_ornstein_uhlenbeck():
 
 
 def test_independent_prototype():
-    """Constants of dry friction on another grid, with nine digits or more.
+    """The constants of dry friction are those of another code, to nine digits or more.
 
     They are from a prototype that shares no code; the manual has them in
     docs/methods/boundary_layer.md.

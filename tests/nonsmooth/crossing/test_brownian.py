@@ -88,7 +88,7 @@ def test_unequal_and_single_levels_at_random():
 
 
 def test_the_paper_s_series():
-    """Eq. (defFexplicit) as printed, where it converges well."""
+    """The probability is eq. (defFexplicit) as printed, where that converges well."""
     b, T, k = 0.7, 1.3, np.arange(20)
     terms = (-1.0) ** k / (2 * k + 1) * np.exp(-((2 * k + 1) ** 2) * np.pi**2 * T / (8 * b**2))
     assert float(ns.brownian_crossing(b, T)) == pytest.approx(
@@ -97,7 +97,7 @@ def test_the_paper_s_series():
 
 
 def test_are_a_law_and_its_density():
-    """Both probabilities add up to 1; 0 at T = 0, monotone; the integral of the density."""
+    """W and 1 - W add up to 1, W increases from 0, and the density integrates to W."""
     T = np.linspace(0, 50, 2001)
     for lower in (None, -0.4, -np.inf):
         crossing, survival, density = (function(1.3, T, lower) for function in FUNCTIONS)
@@ -163,7 +163,7 @@ def test_error_of_the_limit_is_inherited_from_gamma(threshold):
 
 @pytest.mark.parametrize("lower", [-0.4, -1.3, -np.inf])
 def test_exits_by_either_level_add_up(lower):
-    """To the crossing of either; the shares at T = inf are those of the martingale."""
+    """Exits by either level add up to the crossing; at T = inf they are the martingale's."""
     T = np.concatenate([[0.0], np.geomspace(1e-2, 1e3, 60)])
     above = brownian_exit(1.3, T, lower)
     below = brownian_exit(-lower, T, -1.3)

@@ -55,7 +55,7 @@ class TestOrders:
         ids=["equal", "unequal, start elsewhere", "one-sided"],
     )
     def test_corrected(self, threshold, scene):
-        """For every kind of threshold, from the origin and from elsewhere.
+        """Orders 1 and 3 have errors p^-1 and p^-2 for every threshold and start.
 
         Order 3 is exact against order 2, whose own error bends more: it is followed to p = 1e6,
         where no deterministic value resolves it.
@@ -140,7 +140,7 @@ class TestSmallScales:
             assert np.all(np.diff(value) >= -1e-13)  # rounding of means over 80 clocks
 
     def test_far_below_its_range(self):
-        """Nothing is claimed at p = 1e-3; and a tolerance stops it, with the best value."""
+        """At p = 1e-3 nothing is claimed, and a tolerance stops it with the best value."""
         problem = FRICTION, 0.6, [1.0, 200.0], 1e-3
         found = ns.crossing_probability(*problem, method="corrected", order=2)
         assert found.probability_error[1] > 0.5
@@ -157,7 +157,7 @@ class TestSmallScales:
 
 
 def test_orders_need_constants():
-    """The message names the cure."""
+    """An order without its constants is refused; the message names the cure."""
     with pytest.raises(ns.NonsmoothError, match="order=2"):
         ns.crossing_probability(SKEWED_AND_STARTED, 0.6, [1.0], method="corrected", order=3)
     with pytest.raises(ns.NonsmoothError, match="use order=1 or method='monte_carlo'"):

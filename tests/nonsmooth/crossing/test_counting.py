@@ -18,7 +18,7 @@ HORIZONS = np.linspace(0, 2, 11)[1:]
 
 
 def test_number_of_threads_and_shards_changes_no_count():
-    """One run of two blocks is the sum of two runs of one block."""
+    """The counts of one run of two blocks are the sum of those of one block each."""
     arguments = (FRICTION, 0.6, HORIZONS, 1.0)
     whole = first_passage_counts(*arguments, Sampling(0.05, 2 * BLOCK, 5, threads=2))
     parts = [
@@ -56,7 +56,7 @@ def test_levels_of_both_sides():
 @pytest.mark.parametrize("threshold", [0.3, (-0.5, 0.2), (-np.inf, 0.2), (-0.2, np.inf)])
 @pytest.mark.parametrize("scene", [FRICTION, ns.Scene("elasto_plastic", "langevin")])
 def test_counts_are_those_of_stored_paths(threshold, scene):
-    """Bit for bit: the extremes of int g over all steps against the levels."""
+    """The counts are, bit for bit, those of the extremes of int g on stored paths."""
     # one step from time to time; up to the first, of 16 steps, int g is far from all levels
     times, paths, step = np.geomspace(0.1, 4, 70), 1_500, 0.25
     kept = ns.simulate(scene, 4.0, step=step, paths=paths, seed=6, times=times, keep="paths")
@@ -95,7 +95,7 @@ def test_passage_times_of_two_levels(levels):
 
 @pytest.mark.parametrize(("probability", "trials"), [(0.16, 1_000), (0.5, 400), (1e-4, 100_000)])
 def test_interval_covers_at_its_level(probability, trials):
-    """Exact coverage by summation over the binomial law: 95 % within two, down to 1e-4."""
+    """The interval covers with 95 % within two, down to 1e-4, by the binomial law itself."""
     k = np.arange(trials + 1) if trials < 2_000 else np.arange(200)
     _, lower, upper = proportion(k, trials)
     covered = (lower <= probability) & (probability <= upper)
@@ -104,7 +104,7 @@ def test_interval_covers_at_its_level(probability, trials):
 
 
 def test_interval_at_the_ends():
-    """Nothing or everything counted: the limits 0 and 1 are included."""
+    """The limits 0 and 1 are included where nothing or everything is counted."""
     _, lower, upper = proportion([0, 50], 50)
     assert lower[0] == 0
     assert upper[1] == 1

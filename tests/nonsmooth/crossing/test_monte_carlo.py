@@ -39,7 +39,7 @@ def test_mirrored_levels_of_an_odd_scene():
 
 
 def test_distance_to_the_limit_falls_with_p():
-    """From 0.34 over 0.14 to 0.045 at T = 2, p = 1, 10, 100 (order p^-1/2)."""
+    """The distance falls like p^-1/2: 0.34, 0.14, 0.045 at T = 2 and p = 1, 10, 100."""
     limit = ns.crossing_probability(FRICTION, 0.6, [2.0], method="asymptotic")["probability"][0]
     for p, distance in ((1, 0.344), (10, 0.137), (100, 0.0450)):
         run = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=p, paths=5_000, seed=4, step=0.02)

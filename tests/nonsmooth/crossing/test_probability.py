@@ -22,7 +22,7 @@ def test_asymptotic_method_is_the_limit():
 
 
 def test_corrected_formula_is_taken_where_its_error_is_small():
-    """At large p, but not where g is above the Lyapunov function or tol below the error."""
+    """At large p it is taken, but not for a g above V, nor for a tol below its error."""
     problem = {"threshold": 0.6, "horizons": HORIZONS, "p": 1000.0}
     run = ns.crossing_probability(FRICTION, **problem, tol=1e-4)
     exact = ns.crossing_probability(FRICTION, **problem, method="deterministic")
@@ -52,7 +52,7 @@ def test_corrected_formula_is_taken_where_its_error_is_small():
     ],
 )
 def test_bad_requests_are_refused(arguments, cure):
-    """One line with the cure."""
+    """The error is one line with the cure."""
     defaults = {"threshold": 0.6, "horizons": HORIZONS, "p": 1.0, "paths": 100}
     with pytest.raises(SceneError, match=cure):
         ns.crossing_probability(FRICTION, **(defaults | arguments))

@@ -13,7 +13,7 @@ class TestRandomClock:
 
     @pytest.mark.parametrize("spread", [0.01, 1.0, 30.0])
     def test_mean(self, spread):
-        """Against the inverse Gaussian law of the times at which it reaches a level."""
+        """The mean is that by the inverse Gaussian law of the times at which a level is reached."""
 
         def slope(level, t):
             """Of exp(-1/level), times the law of the time, of mean level and variance 2 b level."""

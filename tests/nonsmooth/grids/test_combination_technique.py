@@ -19,7 +19,7 @@ def product(*rates):
 
 @pytest.mark.parametrize("rates", [(0.3,), (0.4, 0.1), (0.3, -0.45, 0.1), (0.05, 0.5, 0.2, -0.3)])
 def test_the_error_bounds_the_limit(rates):
-    """At every step, with geometric surpluses that at least halve, of either sign."""
+    """At every step the limit is within the error, for surpluses that at least halve."""
     functional = product(*rates)
     lowest = (1,) * len(rates)
     combination = Combination(lowest, functional(lowest), functional, lambda i: 2.0 ** sum(i))

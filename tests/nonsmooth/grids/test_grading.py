@@ -8,7 +8,7 @@ from nonsmooth.grids.grading import distinct, geometric, graded, growing, layers
 
 @pytest.mark.parametrize(("end", "finest", "ratio"), [(1.0, 1 / 64, 4.0), (3.7, 0.011, 2.5)])
 def test_graded_edges_end_at_the_finest(end, finest, ratio):
-    """Equal ratios, none above the one that was asked for, and as few edges as that allows."""
+    """Ratios are equal and at most the one asked for, with as few edges as that allows."""
     edges = graded(end, finest, ratio)
     ratios = edges[:-1] / edges[1:]
     assert edges[[0, -1]] == pytest.approx([end, finest], rel=1e-14)

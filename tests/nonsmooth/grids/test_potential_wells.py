@@ -93,7 +93,7 @@ def test_paths_that_never_leave_their_well_are_refused(monkeypatch):
 
 
 def test_wells_and_what_is_none():
-    """One start in each; a ripple below 2 kT and a slope in one direction make none."""
+    """Each well has a start; a ripple below 2 kT or a slope one way makes no well."""
     double = ns.Langevin("eta**4/4 - 2*eta**2")
     assert potential_wells.starts(FRICTION) == [{}]
     found = potential_wells.starts(ns.Scene("friction", double, potential="x**2/2", observable="x"))

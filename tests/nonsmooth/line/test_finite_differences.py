@@ -84,7 +84,7 @@ def test_intensity_of_the_noise_enters_squared(reference):
     ],
 )
 def test_bad_grids_are_refused(arguments, cure):
-    """One line with the cure."""
+    """The error is one line with the cure."""
     defaults = {"scene": SCENE, "nodes": 401, "time_step": 0.01}
     with pytest.raises(SceneError, match=cure):
         finite_differences.moments(times=[1.0], half_width=6.0, **(defaults | arguments))

@@ -230,7 +230,7 @@ def exponential(scale2, rate):
     ],
 )
 def test_ornstein_uhlenbeck(damping, observable, exact):
-    """Without friction, from the Hermite coefficients of g."""
+    """Without friction gamma^2 is the sum over the Hermite coefficients of g."""
     sigma = 0.5 * np.sqrt(damping)  # so that the variance is 1/8
     scene = ns.Scene("elasto_plastic", White(sigma), damping=damping, observable=observable)
     value, error = quadrature.asymptotic_variance(scene)

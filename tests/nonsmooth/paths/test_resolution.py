@@ -26,7 +26,7 @@ def test_tolerance_is_met():
 
 
 def test_what_would_take_for_ever_is_refused():
-    """One line with a tolerance that would not."""
+    """The error is one line with a tolerance that would not."""
     with pytest.raises(ToleranceError, match="use tol >="):
         simulate(FRICTION, 10.0, tol=1e-9)
 

@@ -257,7 +257,7 @@ def test_unstable_steps_are_refused(scene, name, step):
 
 
 def test_requests_that_no_scheme_can_meet():
-    """One line that names the cure."""
+    """The error is one line that names the cure."""
     with pytest.raises(SceneError, match="unknown scheme 'heun'"):
         scheme(FRICTION, "heun")
     with pytest.raises(SceneError, match="choose 'strang'"):

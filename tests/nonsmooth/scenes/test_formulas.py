@@ -51,7 +51,7 @@ def test_formula_means_what_python_means():
     ],
 )
 def test_anything_but_arithmetic_is_refused(text):
-    """One line that quotes the formula."""
+    """The error is one line that quotes the formula."""
     with pytest.raises(ExpressionError) as error:
         parse(text, (x,))
     assert repr(text) in str(error.value)

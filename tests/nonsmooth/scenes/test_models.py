@@ -76,7 +76,7 @@ def test_what_is_asked_of_the_papers_models():
 
 
 def test_walls_confine_the_start():
-    """At n = inf, at the model's own distance."""
+    """At n = inf a start beyond the model's own wall is refused."""
     narrow = replace(OBSTACLE, name="narrow", penalty=NARROW_WALLS)
     ns.Scene(narrow, n=float("inf"), start={"x": 0.4})
     with pytest.raises(SceneError, match=r"confined to \[-0.5, 0.5\]"):

@@ -130,7 +130,10 @@ class Filtered:
 
 
 def test_a_noise_of_another_kind_is_simulated():
-    """By the Euler-Maruyama scheme, with the stationary covariance; grids refuse it."""
+    """It is simulated by the Euler-Maruyama scheme, with the stationary covariance.
+
+    Grids refuse it.
+    """
     scene = ns.Scene("friction", Filtered(), observable="eta")
     assert isinstance(scene.noise, Noise)
     assert scene.state == ("zeta", "eta")

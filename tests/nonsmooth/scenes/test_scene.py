@@ -47,7 +47,7 @@ def test_minimal_state(scene, state):
     ],
 )
 def test_impossible_scenes_are_refused(scene, offender):
-    """One line that names the offender."""
+    """The error is one line that names the offender."""
     with pytest.raises(NonsmoothError) as error:
         ns.Scene(**scene)
     assert offender in str(error.value)
@@ -67,7 +67,7 @@ def test_impossible_scenes_are_refused(scene, offender):
     ],
 )
 def test_impossible_noises_are_refused(noise, offender):
-    """One line that names the offender."""
+    """The error is one line that names the offender."""
     with pytest.raises(NonsmoothError, match=offender) as error:
         noise()
     assert "\n" not in str(error.value)
@@ -88,13 +88,13 @@ def test_what_the_theorems_do_not_cover_is_warned_about():
 
 @pytest.mark.parametrize("noise", [None, 0.0, "none"])
 def test_a_scene_without_noise_is_refused(noise):
-    """One line that says what to choose from."""
+    """The error is one line that says what to choose from."""
     with pytest.raises(SceneError, match="white"):
         ns.Scene("friction", noise=noise)
 
 
 def test_colored_noise_by_formulas():
-    """Of type 2 if it has a Hamiltonian; a name stays a name."""
+    """It is of type 2 if it has a Hamiltonian, and a name stays a name."""
     rest = {"model": "friction", "potential": "0", "observable": "y"}
     for noise, expected in (
         ("white", ns.White()),
@@ -105,7 +105,7 @@ def test_colored_noise_by_formulas():
 
 
 def test_penalty_force_is_an_observable():
-    """By the name it has in the model; its state is the smallest that determines it."""
+    """It goes by its name in the model; the state is the smallest that determines it."""
     scene = ns.Scene("friction", observable="friction_force")
     assert scene.state == ("y",)
     assert scene.is_odd()

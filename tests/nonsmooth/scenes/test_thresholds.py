@@ -40,6 +40,6 @@ def test_numbers_and_pairs(threshold, levels):
     ],
 )
 def test_what_nothing_can_cross_is_refused(threshold, cure):
-    """One line with the cure."""
+    """The error is one line with the cure."""
     with pytest.raises(SceneError, match=cure):
         bounds(threshold)

@@ -36,7 +36,7 @@ def test_gibbs_density_is_the_grids():
 
 @pytest.mark.parametrize("scene", [OBSTACLE, FRICTION])
 def test_closed_forms_have_mass_one_and_are_even(scene):
-    """By averages over bins that hold all but 1e-12 of the mass."""
+    """Averages over bins that hold all but 1e-12 of the mass sum to 1 and are even."""
     edges = {name: np.linspace(-8, 8, 161) for name in scene.state}
     edges |= {"x": np.linspace(-3, 3, 61)} if "x" in scene.state else {}
     for name, (value, error) in bin_averages(scene, edges, 1e-8).items():

@@ -160,7 +160,7 @@ def test_projection_against_the_whole_exponential():
 
 
 def test_what_cannot_be_solved_is_refused(monkeypatch):
-    """Three variables, n = inf, a tolerance out of reach, growth: one line each."""
+    """Three variables, n = inf and a tolerance out of reach are refused in one line each."""
     with pytest.raises(SceneError, match="method='monte_carlo'"):
         ns.variance(ns.Scene("friction", "hamiltonian"), [1.0], method="deterministic")
     with pytest.raises(SceneError, match="n = inf"):

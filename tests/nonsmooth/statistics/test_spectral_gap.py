@@ -55,6 +55,6 @@ def test_correlations_decay_at_the_gap():
 
 
 def test_more_variables_are_refused():
-    """One line that says what to do."""
+    """The error is one line that says what to do."""
     with pytest.raises(SceneError, match="Monte Carlo"):
         ns.spectral_gap(ns.Scene("elasto_plastic", "langevin", potential="x**2/2"))

@@ -19,7 +19,7 @@ LINE = np.concatenate([s * np.geomspace(3e-7, 9e5, 4003) for s in (-1, 1)])
 @pytest.mark.parametrize("potential", POTENTIALS)
 @pytest.mark.parametrize("n", [1, 100, 1e4])
 def test_confinement(model, potential, n):
-    """(HU2) to (HU5) and sign(x) U' >= -beta_4 for U, shifted to be positive."""
+    """U, shifted to be positive, satisfies (HU2) to (HU5) and sign(x) U' >= -beta_4."""
     scene = ns.Scene(model, potential=potential, n=n, observable="x")
     c = assumptions.confinement(scene)
     U, slope = (vectorised(e, (x,))(LINE) for e in assumptions.potential(scene))
@@ -34,7 +34,7 @@ def test_confinement(model, potential, n):
 
 
 def test_confinement_of_the_parabola():
-    """Known constants: U/x^2 = 1/2 and x U'/U = 2, of which half is taken."""
+    """The constants of x^2/2 are known: U/x^2 = 1/2, and x U'/U = 2, of which half is taken."""
     c = assumptions.confinement(ns.Scene("friction", potential="x**2/2", observable="x"))
     assert c.lambda_1 == pytest.approx(0.25, rel=1e-12)
     assert c.lambda_2 == pytest.approx(1.0, rel=1e-12)
@@ -46,7 +46,7 @@ def test_confinement_of_the_parabola():
     ("potential", "offender"), [("0", "HU2"), ("abs(x)", "HU2"), ("x**4", "HU1"), ("-x**2", "HU2")]
 )
 def test_potentials_outside_the_assumptions(potential, offender):
-    """One line that names the assumption."""
+    """The error is one line that names the assumption."""
     with pytest.raises(SceneError, match=offender):
         assumptions.confinement(ns.Scene("elasto_plastic", potential=potential))
 
@@ -70,7 +70,7 @@ def test_restoring_rate():
     ("stiffness", "damping"), [(1, 1), (1, 0.01), (2, 0.6), (0.1, 5), (100, 1), (4, 2)]
 )
 def test_dissipation(stiffness, damping):
-    """(T117) and (T120), as quadratic forms of the generator's own algebra."""
+    """(T117) and (T120) hold as quadratic forms of the generator's own algebra."""
     noise = ns.KanaiTajimi(stiffness, damping)
     c = assumptions.dissipation(noise)
     energy = noise.energy + c.cross * eta * zeta

@@ -18,7 +18,7 @@ WELLS = "x**2/2 + 4*exp(-x**2)"
 @pytest.mark.parametrize("noise", ["white", "langevin", QUARTIC, "hamiltonian"])
 @pytest.mark.parametrize(("damping", "n"), [(0.1, 2), (1.0, 100), (10.0, 1e4)])
 def test_every_scene_has_room(model, noise, damping, n):
-    """(HV2), the boxed bound, the claims and the lower bound; Claim 10 only as mended."""
+    """(HV2), the boxed bound, the lower bound and the claims hold, Claim 10 as mended."""
     m = margins(ns.Scene(model, noise, n=n, damping=damping, potential=WELLS), points=3000)
     for name in ("drift", "boxed", "lower", "mechanical", "forcing"):
         assert getattr(m, name) >= -m.rounding, name
@@ -40,7 +40,7 @@ def test_velocity_alone():
 
 
 def test_supremum_is_found_off_the_grid():
-    """By the refinement: two wells beyond the yield limit, between points of a coarse grid."""
+    """Refinement finds it in two wells between the points of a coarse grid."""
     scene = ns.Scene("elasto_plastic", n=2, potential=WELLS)
     coarse, fine = (margins(scene, points=points).supremum for points in (300, 100_000))
     # the fine grid alone, without refinement
@@ -77,7 +77,7 @@ def test_wrong_constants_are_found_out(monkeypatch, change, noise, name):
 
 
 def test_grid():
-    """Symmetric, with 0, the kinks and the reach, in both signs."""
+    """The grid is symmetric and holds 0, the kinks and the reach."""
     scene = ns.Scene("friction", "hamiltonian", n=50, potential="x**2/2")
     names = (zeta, eta, y, x)
     z = grid(scene, names, 5000, 1e4)

@@ -80,7 +80,7 @@ def test_far_out_friction_is_not_felt():
 
 @pytest.mark.parametrize(("damping", "n"), [(1.0, 3.0), (1.0, 100.0), (0.2, 30.0), (4.0, 30.0)])
 def test_poisson_bound_under_friction(damping, n):
-    """By quadrature of u', on so many points that its own error is some 1e-9."""
+    """The bound is that by quadrature of u', whose own error is some 1e-9."""
     scene = ns.Scene("friction", n=n, damping=damping)
     z = np.append(0.0, np.geomspace(1e-5, 12 / np.sqrt(damping), 40_001))
     u = cumulative_trapezoid(quadrature.poisson_slope(scene, z), z, initial=0)
@@ -122,7 +122,7 @@ def test_what_has_no_rate_is_refused():
 
 
 def test_the_narrow_valley_of_stiff_walls():
-    """V is large but for |z| < 1e-4: as on a grid of two levels more."""
+    """V is large but for |z| < 1e-4; the ratio is that of a grid of two levels more."""
     scene = ns.Scene("obstacle", n=1000, potential="x**2/2", observable="x")
     found = poisson_bound(scene)
     finer, _ = ergodicity.largest_ratio(scene, 4, 1.0)

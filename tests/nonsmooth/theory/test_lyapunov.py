@@ -19,12 +19,12 @@ EXPANSION = delta / 2 + epsilon * C_V + y**2 * (1 - delta * (C_b - epsilon / 2))
 
 
 def test_expansion_white():
-    """Eq. (expansion-V2) as printed."""
+    """The drift of V is eq. (expansion-V2) as printed."""
     assert sympy.expand(lyapunov.drift("white") - EXPANSION) == 0
 
 
 def test_expansion_langevin():
-    """Eq. (expansion-V3) as printed."""
+    """The drift of V is eq. (expansion-V3) as printed."""
     v = sympy.diff(equations.v(eta), eta)
     S_3 = xi / 2 - v * xi * eta + epsilon * xi * eta**2 / 2
     printed = S_3 + eta * (delta * y + x) + EXPANSION - delta / 2
@@ -32,7 +32,7 @@ def test_expansion_langevin():
 
 
 def test_expansion_hamiltonian():
-    """Eq. (expansion-V4) as printed."""
+    """The drift of V is eq. (expansion-V4) as printed."""
     Gamma = K * (equations.H(eta, zeta) + lyapunov.R(eta, zeta) + M)
     B = equations.drift(ns.Scene("friction", "hamiltonian").noise)
     S_4 = sympy.diff(Gamma, zeta, 2) / 2 + epsilon * Gamma
@@ -58,7 +58,7 @@ def test_evaluation_is_the_expression(model, noise):
 
 @pytest.mark.parametrize("noise", ["white", "langevin", "hamiltonian"])
 def test_drift_is_the_generator_of_the_scene(noise):
-    """By finite differences of V along the drift that the kernels integrate."""
+    """The drift is that of finite differences of V along the drift of the kernels."""
     scene = ns.Scene("elasto_plastic", noise, n=3, potential="x**2/2")
     c = lyapunov.constants(scene)
     z = dict(zip(STATE_VARIABLES, (0.3, -0.7, 0.9, 1.8), strict=True))
@@ -110,6 +110,6 @@ def test_constants_satisfy_the_boxed_inequalities(noise, potential):
     ],
 )
 def test_scenes_outside_the_proof_are_refused(scene, offender):
-    """One line that names the reason."""
+    """The error is one line that names the reason."""
     with pytest.raises(SceneError, match=offender):
         lyapunov.constants(ns.Scene("friction", **scene))

@@ -43,7 +43,7 @@ def test_same_bytes_again(tmp_path):
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_values_that_are_not_finite_are_refused(tmp_path, bad):
-    """And nothing is written."""
+    """They are refused, and nothing is written."""
     with pytest.raises(ArtifactError, match="'q' is not finite"):
         artifact.write(example((1.0, bad)), tmp_path / "x.nc", "")
     assert list(tmp_path.iterdir()) == []

@@ -33,12 +33,12 @@ def leaves(schema, path=()):
 
 
 def test_the_paper_configuration_is_valid():
-    """As it stands in the repository."""
+    """config.yaml is valid as it stands in the repository."""
     check(CONFIG)
 
 
 def test_every_key_is_described():
-    """In the schema, directly or through a reference."""
+    """The schema describes every key, directly or through a reference."""
     schema = yaml.safe_load(SCHEMA.read_text())
     definitions = schema["$defs"]
     for path, value in [*leaves(schema), *leaves({"properties": definitions})]:

@@ -7,7 +7,7 @@ from reproduction.rendering.printed import numbered, printed_values
 
 
 def test_values_of_table_4():
-    """As the paper prints them."""
+    """They are read as the paper prints them."""
     assert printed_values("tab:convergence-vng-n")[100] == 0.136784
 
 
@@ -19,6 +19,6 @@ def test_labels_become_the_numbers_that_readers_see():
 
 
 def test_an_unknown_label_is_refused():
-    """With where to add it."""
+    """The error says where to add it."""
     with pytest.raises(ArtifactError, match=r"printed\.yaml has no number for the label misspelt"):
         numbered(r"eq. \ref{misspelt}")

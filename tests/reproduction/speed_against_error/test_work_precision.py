@@ -71,7 +71,7 @@ def test_front():
 
 
 def test_exponent():
-    """Exact for a power, with the textbook's error for one that is not."""
+    """It is exact for a power, and has the textbook's error for what is not quite one."""
     size = np.array([1.0, 10.0, 100.0])
     assert exponent(size, 3 * size**1.5) == pytest.approx((1.5, 0.0), abs=1e-7)
     # residuals (1, -2, 1) e, so that the variance is 6 e^2 / (2 ln(10)^2)
@@ -84,7 +84,7 @@ class TestPeers:
     """Programs of their own that answer requests."""
 
     def test_fitted_grid_is_of_second_order(self):
-        """For a small and a large n: half the widths, a quarter of the error to within 15 %.
+        """Half the widths give a quarter of the error to within 15 %, for small and large n.
 
         The next term of the expansion is of the order of the error's ratio, 1/16, again.
         """
@@ -96,7 +96,7 @@ class TestPeers:
                 assert errors[0] / errors[1] == pytest.approx(4, rel=0.15)
 
     def test_failure_is_told(self, capfd):
-        """With the request that failed."""
+        """A program that fails is told with the request that failed."""
         with (
             peer(sys.executable, DIFFERENCES) as request,
             pytest.raises(CheckError, match=r"differences.py failed at {'method': 'none'}"),
@@ -110,14 +110,14 @@ class TestReferences:
 
     @pytest.mark.parametrize("n", [2.0, 100.0, 1e4])
     def test_quadrature_of_the_long_run(self, script, n):
-        """Against spectral elements, whose rounding grows with n."""
+        """It agrees with spectral elements, whose rounding grows with n."""
         found = ns.variance(ns.Scene("friction", n=n), [100.0], 1e-8)
         value, error = (float(found[name][0]) / 100 for name in ("v", "v_error"))
         assert abs(script("pde")["long_run"](n, 100.0) - value) <= error + 1e-13
 
     @pytest.mark.parametrize(("p", "published"), [(1, W[1]), (1000, W[1000])])
     def test_inversion_on_a_line(self, script, p, published):
-        """Against seven digits known before."""
+        """It agrees with the seven digits that are published."""
         value, error = script("crossing")["on_a_line"](FRICTION, 0.6, 2.0, p)
         assert error < 1e-7
         assert abs(value - published) < error + 1e-7

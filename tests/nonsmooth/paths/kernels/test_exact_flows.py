@@ -20,7 +20,7 @@ def reference(right_hand_side, start, t):
 @pytest.mark.parametrize("rate", [0.0, 1.3])
 @pytest.mark.parametrize(("knot", "inner", "outer"), [(0.1, 10.0, 0.0), (1.0, 0.0, 20.0)])
 def test_penalised_flow_solves_its_equation(rate, knot, inner, outer):
-    """Against an ODE solver, over all the passages through the pieces."""
+    """The flow is that of an ODE solver, over all passages through the pieces."""
     for _ in range(12):
         z, drive, t = RNG.normal(scale=2), RNG.normal(scale=3), RNG.uniform(0.05, 1.5)
 
@@ -54,7 +54,7 @@ def test_spring_contact_solves_its_equation_and_keeps_the_energy(n):
 
 
 def test_spring_contact_against_an_ode_solver():
-    """One penetration and several, at moderate stiffness."""
+    """The flow is that of an ODE solver, for one penetration and several."""
 
     def motion(_, z):
         y, x = z
@@ -77,7 +77,7 @@ def test_elastic_impact_is_the_limit_of_the_spring():
 
 
 def test_dry_friction_sticks_and_slips():
-    """Sticks while |drive| <= 1, else slips with the excess; limit of the penalised flow."""
+    """It sticks while |drive| <= 1, else slips with the excess, as the penalised flow tends to."""
     assert exact_flows.dry_friction(0.3, 5.0, 0.9, 0.7) == 0.0
     assert exact_flows.dry_friction(0.0, 2.0, 1.5, 0.0) == pytest.approx(1.0)
     assert exact_flows.dry_friction(-0.5, 1.0, 0.0, 0.0) == 0.0
@@ -141,7 +141,7 @@ def test_dry_friction_at_rest_is_the_penalised_flow_without_drive():
 
 
 def test_what_is_not_a_number_stays_so():
-    """In either argument, so that a diverged path is seen."""
+    """A nan in either argument gives nan, so that a diverged path is seen."""
     for name in FLOWS:
         for z, drive in ((np.nan, 0.3), (0.3, np.nan)):
             if name != "at rest" or np.isnan(z):

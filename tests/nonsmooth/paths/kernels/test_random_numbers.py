@@ -107,7 +107,7 @@ def test_precisions_share_their_noise():
 
 
 def test_streams_are_derived_from_seed_scene_and_block_only():
-    """Distinct for distinct ones; the penalization and the spelling of a number do not enter."""
+    """Streams differ by seed, scene and block; n and the spelling of a number do not enter."""
     damped = ns.Scene("friction", damping=2.0)
     keys = [(s, seed, b) for s in (FRICTION, damped) for seed in (1, 2, (1, "a")) for b in (0, 1)]
     states = np.hstack([generator_words(*key) for key in keys])

@@ -20,7 +20,7 @@ CASES = {
 @pytest.mark.parametrize("precision", ["float32", "float64"])
 @pytest.mark.parametrize("name", CASES)
 def test_accuracy(name, precision):
-    """Against numpy in double precision."""
+    """The functions agree with those of numpy in double precision."""
     function, exact, x, unit, allowed = CASES[name]
     jitted = numba.njit(function) if name in ("sine", "cosine") else function
 
@@ -57,7 +57,7 @@ def test_angle(precision):
 
 
 def test_extrema_and_choice():
-    """They compute both sides and choose."""
+    """Extrema and choices are right; outside of compiled code numpy is asked for."""
 
     @numba.njit
     def choose(x, y):
