@@ -8,14 +8,16 @@ What is studied: `Scene`, with the noises `White`, `Langevin`, `Hamiltonian`, `O
 `KanaiTajimi`. What can be asked of a scene:
 
 - `asymptotic_variance`: gamma^2, and `variance`: the variance of the integral at given times
-- `invariant_density`, `spectral_gap`: where the state is in the long run, and how soon
+- `invariant_density`, `spectral_gap`: where the state is in the long run, and how soon it forgets
+  its start
 - `simulate`: paths, or the moments of the integral
 - `crossing_probability`: of a threshold by the integral; `extrapolation_length`: kappa, by which
   the threshold appears farther away
 - `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`: the limit, in which
   the integral is a Brownian motion
 
-Results are `Estimate` objects or xarray datasets, with errors; errors raised are `NonsmoothError`.
+Results are `Estimate` objects or xarray datasets, with error estimates. Exceptions meant for the
+user are subclasses of `NonsmoothError`.
 The names above are imported when first used; `__init__.pyi` says from where.
 """
 

@@ -1,4 +1,4 @@
-"""What every function asks of its arguments."""
+"""Checks of arguments that several functions share."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -7,7 +7,7 @@ from nonsmooth.errors import SceneError
 
 
 def require_increasing(name: str, values: ArrayLike) -> None:
-    """Refuse what is not a list of increasing positive finite numbers."""
+    """Raise a SceneError unless the values are positive, finite and increasing."""
     values = np.asarray(values, dtype=float)
     if values.ndim != 1 or not (
         values.size and values[0] > 0 and np.all(np.diff(values) > 0) and np.isfinite(values[-1])
@@ -16,7 +16,7 @@ def require_increasing(name: str, values: ArrayLike) -> None:
 
 
 def require_count(name: str, value: object) -> None:
-    """Refuse what is not a whole positive number."""
+    """Raise a SceneError unless the value is a positive whole number."""
     if not (isinstance(value, int | np.integer) and value > 0):
         raise SceneError(
             f"the simulation needs {name} > 0, a whole number, got {value!r}; choose one"
@@ -24,6 +24,6 @@ def require_count(name: str, value: object) -> None:
 
 
 def require_positive(name: str, value: float) -> None:
-    """Refuse what is not a positive finite number."""
+    """Raise a SceneError unless the value is a positive finite number."""
     if not 0 < value < np.inf:
         raise SceneError(f"the simulation needs {name} > 0, got {value}; choose a positive number")

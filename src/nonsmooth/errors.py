@@ -1,4 +1,4 @@
-"""The errors a user can cause: each message is one line naming the offender and the cure."""
+"""The errors a user can cause: each message is one line that says what is wrong and what helps."""
 
 
 class NonsmoothError(Exception):

@@ -13,10 +13,11 @@ class Estimate:
     ----------
     value : float
     error : float
-        Bound on the absolute error of a deterministic method, or the standard error.
+        Absolute: an estimated bound if the method is deterministic, else the standard error.
     method : str
+        Name of the method that found it.
     seconds : float
-        Time it took; never written to an artifact.
+        Time it took.
     """
 
     value: float
@@ -26,7 +27,18 @@ class Estimate:
 
 
 def require(met: bool, value: float, error: float, tol: float, cure: str = "loosen tol") -> None:
-    """Raise unless a relative tolerance of gamma^2 has been met.
+    """Raise an error unless gamma^2 was found to a relative tolerance.
+
+    Parameters
+    ----------
+    met : bool
+        Whether it was.
+    value, error : float
+        gamma^2 and its absolute error.
+    tol : float
+        The relative tolerance.
+    cure : str
+        What the user is told to do.
 
     Raises
     ------

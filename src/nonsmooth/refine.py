@@ -7,18 +7,18 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Refined:
-    """What a refinement ends with.
+    """The result of a refinement.
 
     Attributes
     ----------
     value : object
         The solution on the finest level that was tried.
     error : object
-        Its estimated error; None if there was one level only.
+        Its estimated error; None if only one level was tried.
     met : bool
         Whether the error is small enough.
     solutions : tuple
-        On all levels that were tried, the finest last.
+        The solutions on all levels that were tried, the finest last.
     """
 
     value: Any
@@ -39,19 +39,19 @@ def until_agreement(
     Parameters
     ----------
     levels : iterable
-        Levels of resolution, from coarse to fine: degrees, grids, or steps. It ends where finer
-        ones cannot be afforded.
+        Levels of resolution, from coarse to fine: degrees, grids, or steps. It ends with the
+        finest level that can be afforded.
     solve : callable
         Takes a level, returns the solution on it.
     error : callable
-        Takes the solutions on all levels so far, two at least, the finest last; returns the
-        estimated error of the last. Two levels may agree by chance, because errors change sign:
-        the earlier ones are there to be asked as well.
+        Takes the solutions on all levels so far, at least two, the finest last; returns the
+        estimated error of the last. It is given all of them because two levels may agree by
+        chance, where the error changes its sign; the earlier levels then show it.
     met : callable
-        Takes a solution and its error; returns whether to stop with it.
+        Takes a solution and its error; returns whether the error is small enough.
     hopeless : callable
-        Takes a solution and its error; returns whether to stop without it, as where levels move
-        apart.
+        Takes a solution and its error; returns whether to give up, for example because the
+        differences between levels do not become smaller.
 
     Returns
     -------

@@ -3,8 +3,8 @@
 With colored noise the generator is the sum A = L + T of the noise's own generator L and of the
 transport T by the oscillator's drift. L acts on the variables of the noise only, and T does not mix
 different values of the noise, so that both are easily inverted: one step of alternating
-directions, 2 a (a - T)^-1 (a - L)^-1 with a rate a > 0, is close to -A^-1 on what decays at
-such rates. It preconditions GMRES.
+directions, 2 a (a - T)^-1 (a - L)^-1 with a number a > 0, is close to -A^-1 on functions that decay
+at rates near a. It preconditions GMRES.
 """
 
 from collections.abc import Mapping
@@ -28,8 +28,8 @@ from nonsmooth.scenes.symbols import x
 class AlternatingSolver:
     """Solver by alternating directions and GMRES, for scenes with colored noise.
 
-    See `solver.PoissonSolver` for what it promises. Folded functions are arrays of the shape
-    (forcing eta, oscillator, zeta), flattened.
+    See `solver.PoissonSolver` for what it promises. A folded function is an array over the values
+    of the forcing eta, the oscillator's variables, and zeta, in this order, flattened.
 
     Parameters
     ----------
@@ -40,14 +40,14 @@ class AlternatingSolver:
     mirrored : bool
         Whether to use that drift and observable are odd. No node may be its own mirror image.
     shift : float
-        The number a of the preconditioner, a rate between those of L and of T.
+        The number a of the preconditioner: a rate between those at which L and T act.
 
     Attributes
     ----------
     iterations : int
-        Of the last solution.
+        Number that the last solution took.
     most : int
-        Iterations after which to give up.
+        Number after which to give up.
     """
 
     def __init__(self, scene: Scene, axes: Mapping[Symbol, Axis], mirrored: bool, shift: float):
@@ -57,8 +57,8 @@ class AlternatingSolver:
         forcing, *own = noise
         self.mirrored = mirrored
         self.most = chosen.krylov * chosen.restarts
-        # numbers of nodes: of the forcing, of them those solved on, of the other variables of the
-        # noise, and of the oscillator
+        # Numbers of nodes: of the forcing on the whole grid and on the part that is solved on, of
+        # the noise's other variable, and of the oscillator.
         self._forcing = len(axes[forcing].nodes)
         self._kept = self._forcing // 2 if mirrored else self._forcing
         self._own = int(np.prod([len(axes[symbol].nodes) for symbol in own]))
@@ -74,8 +74,9 @@ class AlternatingSolver:
             for sign, part in self._noise.items()
         }
         self._measure = self._measure_near_origin(rest)
-        # Residuals are weighted with a density, because they are to bound errors of means; without
-        # weights, the corners of the box would count most. Between walls the density does not fall.
+        # Residuals are weighted with a density, because they are to bound errors of means. Without
+        # weights the corners of the box would count most. Walls hold the displacement in a range
+        # where its density does not fall, so that the weight is constant in it.
         flat = scene.mechanics.argument if scene.mechanics.argument == x else None
         self._scale = self.fold(np.sqrt(_normal(axes, flat)))
 
@@ -97,7 +98,7 @@ class AlternatingSolver:
         ]
 
     def _measure_near_origin(self, rest):
-        """Return a measure of mass 1; solutions are made unique by their mean in it."""
+        """Return a measure of mass 1, by whose integral of the solution its constant is fixed."""
         masses = scipy.linalg.null_space(self._noise[EVEN].T, rcond=1e-9)[:, 0]
         masses = masses.reshape(self._kept, 1, self._own) / masses.sum()
         measure = (masses * _bump(rest)[None, :, None]).ravel()
@@ -166,7 +167,10 @@ class AlternatingSolver:
         return 2 * self._shift * values.ravel()
 
     def _gmres(self, right, parity, accuracy, adjoint=False):
-        """Solve (-A + 1 measure') u = f: the measure's integral of u is then the mean of f."""
+        """Solve (-A + 1 measure') u = f; 1 is a column of ones and measure' a row.
+
+        The integral of u over the measure is then the mean of f.
+        """
         ones, measure, scale = np.ones(right.size), self._measure, self._scale
         if adjoint:
             ones, measure, scale = measure, ones, ones
@@ -240,7 +244,7 @@ class AlternatingSolver:
 
 
 def _normal(axes, flat):
-    """Evaluate a normal density that falls towards the box's ends, but not in one variable."""
+    """Evaluate a normal density, up to a factor; it is constant in the variable `flat`."""
     total = np.ones(1)
     for symbol, axis in axes.items():
         depth = 0 if symbol == flat else tuning.ALTERNATING_DIRECTIONS.depth

@@ -2,9 +2,9 @@
 
 Each variable has a level; an index is a tuple of levels, one for each variable. The surplus of an
 index is what its grid adds to all coarser grids: the alternating sum over the neighbours below.
-Surpluses are small where several variables are fine at once. A sum over grids that are fine in a
-few variables only is therefore as accurate as a single grid that is fine in all of them, and much
-cheaper. The set of indices grows where most accuracy is gained for the cost.
+Surpluses are small where several variables are fine at once. A sum over grids, each of them
+fine in a few variables only, is therefore as accurate as a single grid that is fine in all of them,
+and much cheaper. The set of indices grows where most accuracy is gained for the cost.
 
 Gerstner & Griebel, Computing 71 (2003) 65-87.
 """
@@ -75,9 +75,9 @@ class Combination:
         return _moved(index, k, -1) if index[k] > self._lowest[k] else None
 
     def _expected(self, index):
-        """Bound a surplus by those of its parents, as if surpluses hardly decayed.
+        """Estimate a surplus by those of its parents, on the safe side: as if they hardly decayed.
 
-        The surplus of a single parent may be small by chance, so the one before it counts as well.
+        A parent's surplus may be small by chance, so that the one before it counts as well.
         """
         raised = [k for k in self._axes if index[k] > self._lowest[k]]
         bounds = []
@@ -93,7 +93,7 @@ class Combination:
 
     @property
     def error(self) -> float:
-        """Bound on what all indices outside the set add: those next to it, and those beyond."""
+        """Estimated sum of the surpluses of all indices outside the set, by those next to it."""
         return sum(self._missing.values())
 
     def refine(self, most: float) -> float:
@@ -113,7 +113,7 @@ class Combination:
         return costs[best]
 
     def dearest(self) -> Index:
-        """Return the index in the set whose grid costs most."""
+        """Return the index in the set with the most expensive grid."""
         return max(self._values, key=self._cost)
 
 

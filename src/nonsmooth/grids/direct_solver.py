@@ -24,7 +24,7 @@ def factorise(matrix: sp.sparray) -> spla.SuperLU:
 
 
 class _Factors:
-    """Sparse LU with one step of iterative refinement, which mends its weak pivoting."""
+    """Sparse LU with one step of iterative refinement, which makes up for its weak pivoting."""
 
     def __init__(self, matrix):
         self.matrix = matrix

@@ -2,7 +2,8 @@
 
 A variable that noise drives gets continuous elements, on which the second derivative is the weak
 one. A variable that is only transported gets discontinuous elements. There the sign of the drift on
-a face decides from which side a value is taken (upwinding), so that jumps are kept apart.
+a face decides from which side a value is taken (upwinding), so that a function may jump at a face
+without oscillating in the elements next to it.
 """
 
 from collections.abc import Iterable
@@ -33,7 +34,7 @@ class Axis:
     curvature : scipy.sparse.csr_array, shape (k, k), or None
         Weak second derivative with zero slope at both ends; None on discontinuous elements.
     release : scipy.sparse.csr_array, shape (k, k), or None
-        What is added to `curvature` at an end where the slope is free.
+        What is added to `curvature` at an end where the slope is not set to zero.
     faces : numpy.ndarray, shape (f,)
         Where functions may jump.
     jump : scipy.sparse.csr_array, shape (f, k)

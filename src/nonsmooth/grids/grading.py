@@ -1,9 +1,8 @@
-"""Where elements of one variable end: edges that crowd together where a function is hardest.
+"""Edges of the elements of one variable that crowd together where a function is hard to resolve.
 
-Three gradings are needed. `geometric` has exact ratios and leaves the last, smallest element to
-whoever adds the point itself. `graded` has equal ratios that end exactly at the smallest element.
-`growing` starts with the smallest element and caps the largest. They differ in the last digits of
-the edges, and results are compared to the last digit, so none replaces another.
+There are three gradings. `geometric` has an exact ratio; the caller adds the point towards which
+the edges crowd, and with it the smallest element. `graded` has equal ratios and ends exactly at the
+smallest distance. `growing` starts with the smallest element and limits the size of the largest.
 
 The other functions put edges together: `mirrored`, `distinct` and `split`.
 """
@@ -13,11 +12,11 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-_EXACT = 1e-9  # a ratio of ends that is a power to within rounding needs no further element
+_EXACT = 1e-9  # rounding must not add an element where the ratio of the ends is an exact power
 
 
 def layers(end: float, finest: float, ratio: float) -> int:
-    """Count the factors `ratio` that lead from an end to the finest element, at least 1."""
+    """Count the factors `ratio` by which an end must be divided to reach `finest`, at least 1."""
     return max(1, math.ceil(math.log(end / finest, ratio) - _EXACT))
 
 
@@ -72,7 +71,7 @@ def growing(
     finest, widest : float
         Widths of the first element and, at most, of the others.
     spare : float
-        The last element is left out if fewer than so many of its widths remain before the end.
+        The last element is left out if at most so many of its widths remain before the end.
 
     Returns
     -------
@@ -99,7 +98,7 @@ def distinct(edges: ArrayLike, tolerance: float = 0.0, relative: float = 0.0) ->
     ----------
     edges : array_like
     tolerance, relative : float
-        Smallest width of an element, and what it must be more for a unit of distance from 0.
+        An element must be wider than `tolerance` plus `relative` times its distance from 0.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Wells of the potentials U, v and H, between which a scene may pass rarely."""
+"""Wells of the potentials U, v and H, between which paths may pass only rarely."""
 
 import itertools
 import math
@@ -24,7 +24,7 @@ def starts(scene: Scene) -> list[dict[str, float]]:
     Returns
     -------
     list of dict
-        Like `Scene.start`; one only where no barrier is in the way.
+        Like `Scene.start`; a single one if no barrier holds paths up.
     """
     chosen = tuning.POTENTIAL_WELLS
     finite = scene if math.isfinite(scene.n) else scene.with_n(chosen.stiff)

@@ -31,9 +31,9 @@ class Grid:
     levels : dict
         Maps symbols to resolution levels, see `mesh.axes.axes`.
     margin : float
-        Of elements outside the box, see `mesh.axes.axes`.
+        Width of the elements that are added outside the box, see `mesh.axes.axes`.
     shift : float
-        Of `AlternatingSolver`.
+        The shift of `AlternatingSolver`, if this is used.
     """
 
     ends: Mapping[Symbol, float]
@@ -110,7 +110,7 @@ def fitted(scene: Scene, depth: float, level: int) -> Grid:
     depth : float
         Outside the box, the invariant density is of the order exp(-depth) of its maximum.
     level : int
-        Of every variable.
+        Resolution level of every variable.
 
     Returns
     -------
@@ -140,7 +140,7 @@ def fitted(scene: Scene, depth: float, level: int) -> Grid:
 
 
 def _extrapolated(nodes, masses, depth):
-    """Half width for a depth, as if the tails beyond what coarse grids resolve were normal."""
+    """Half width at a depth; beyond what coarse grids resolve, tails are taken to be normal."""
     chosen = tuning.TENSOR_GRIDS
     far = np.argsort(-np.abs(nodes))
     outside = np.cumsum(np.maximum(masses[far], 0.0))
@@ -150,7 +150,7 @@ def _extrapolated(nodes, masses, depth):
 
 
 def _with_best_shift(scene, grid):
-    """Try which shift needs the fewest iterations."""
+    """Try several shifts and keep the one that needs the fewest iterations."""
     count = {}
     for shift in tuning.ALTERNATING_DIRECTIONS.shifts:
         axes, solve = _alternating(scene, replace(grid, shift=shift))

@@ -13,61 +13,70 @@ from dataclasses import dataclass, field
 class Box:
     """How the half widths of the box are searched for."""
 
-    farthest_noise: float = 60.0  # chosen: above the reach of noises whose variance is up to 30
-    noise_points: int = 24_001  # chosen: half widths of noise to 0.0025
-    rays: int = 64  # chosen: directions in the plane of (eta, zeta), 6 degrees apart
-    ray_stride: int = 20  # chosen: every so many points on a ray, half widths to 0.05
+    farthest_noise: float = 60.0  # chosen: search to here; enough for noises of variance up to 30
+    noise_points: int = 24_001  # chosen: points of that search, which are 0.0025 apart
+    rays: int = 64  # chosen: directions searched in the plane of (eta, zeta), 6 degrees apart
+    ray_stride: int = 20  # chosen: on a ray one point in so many is used; these are 0.05 apart
     near: float = 3.0  # chosen: radius within which the noise's least dissipation is looked for
     least_dissipation: float = 1e-2  # chosen: keeps the box finite where F vanishes
-    least: float = 0.1  # chosen: half width of noise that hardly moves
-    spare: float = 1.02  # chosen: above the spacing of what was searched
-    displacements: tuple[float, float, int] = (1e-3, 1e4, 4001)  # chosen: first, last, number
+    least: float = 0.1  # chosen: smallest half width, for noise that hardly moves
+    spare: float = 1.02  # chosen: widens what was found, by more than the spacing of the points
+    # chosen: first, last and number of the displacements searched, a wide range in steps of 0.4 %
+    displacements: tuple[float, float, int] = (1e-3, 1e4, 4001)
 
 
 @dataclass(frozen=True)
 class Elements:
     """How many elements there are, and how they are graded towards a kink."""
 
-    ratio: float = 4.0  # chosen: of neighbouring elements at a kink; larger ones need high degrees
+    ratio: float = 4.0  # chosen: of neighbouring distances from a kink; more needs high degrees
     ratio_at_origin: float = 2.5  # chosen: the same where the kink is at 0
-    coarser_at_friction: float = 1.5  # chosen: layers that the kink of friction does without
-    stopping: float = 1 / 64  # chosen: finest element in a layer that only stops, to its thickness
-    within_wall: tuple[float, ...] = (0.5, 0.75)  # chosen: edges in an elastic wall, to its depth
+    # chosen: at the kink of friction elements end so many factors of `ratio` earlier, because the
+    # kink's distance from 0 is itself the smallest scale
+    coarser_at_friction: float = 1.5
+    # chosen: smallest element at a kink relative to the layer it lies in, at most; elastic walls,
+    # which throw the oscillator back, need no such small ones
+    stopping: float = 1 / 64
+    within_wall: tuple[float, ...] = (0.5, 0.75)  # chosen: edges in an elastic wall, over its depth
     widest: float = 2.2  # chosen: no element is wider than the half width divided by this
-    driven: int = 3  # derived: with odd degrees, the number of continuous nodes is even
-    transported: int = 4  # derived: the number of discontinuous nodes is even
-    few_layers: int = 1  # chosen: towards a kink, with three or four variables
-    more_layers: int = 2  # chosen: the same for the forcing and the velocity, where it bends most
-    depth: float = 20.0  # chosen: of a usual box in temperatures, from which these are estimated
+    driven: int = 3  # derived: elements without a kink; with odd degrees an even number of nodes
+    transported: int = 4  # derived: the same for discontinuous elements, with any degree
+    few_layers: int = 1  # chosen: smaller elements towards a kink, with three or four variables
+    more_layers: int = 2  # chosen: the same for forcing and velocity, in which solutions bend most
+    # chosen: height of a potential at the ends of a usual box, in temperatures; a temperature that
+    # is not known is estimated by it
+    depth: float = 20.0
     bend: float = 1.0  # chosen: temperatures by which a potential may bend in an element
     samples: int = 16  # chosen: points of an element at which the bend is measured
-    most_parts: int = 9  # chosen: of an element that is split for the bend; bounds the cost
+    most_parts: int = 9  # chosen: into which an element is split for the bend; bounds the cost
 
 
 @dataclass(frozen=True)
 class AlternatingDirections:
     """The iteration for three and four variables."""
 
-    depth: float = 14.0  # chosen: of the normal density that weights residuals, at the box's ends
-    krylov: int = 150  # chosen: vectors kept by GMRES, as memory allows
-    restarts: int = 4  # chosen: scenes that need more mix too slowly for this method
-    pilot_accuracy: float = 1e-5  # chosen: of the solutions that compare shifts
-    shifts: tuple[float, ...] = (12.0, 5.0, 30.0, 2.0)  # chosen: the likeliest to be best first
+    depth: float = 14.0  # chosen: residuals are weighted with a density, exp(-14) at the box's ends
+    krylov: int = 150  # chosen: vectors that GMRES keeps between restarts, as memory allows
+    restarts: int = 4  # chosen: of GMRES; scenes that need more mix too slowly for this method
+    pilot_accuracy: float = 1e-5  # chosen: residual of the solutions by which shifts are compared
+    shifts: tuple[float, ...] = (12.0, 5.0, 30.0, 2.0)  # chosen: to be tried, the likeliest first
 
 
 @dataclass(frozen=True)
 class TensorGrids:
     """Box and largest size of tensor grids."""
 
-    margin: float = 0.15  # chosen: of the box, to see whether its size matters
-    spare: float = 10.0  # chosen: what the box leaves out is exp(-10) times the tolerance
-    fits: int = 4  # chosen: times that the box is fitted; it settles after two or three
-    settled: float = 0.15  # chosen: relative change of half widths that is left alone
+    margin: float = 0.15  # chosen: by which the box is enlarged, to see whether its size matters
+    spare: float = 10.0  # chosen: relative density at the box's end, exp(-10) times the tolerance
+    fits: int = 4  # chosen: how often the box is fitted at most; it settles after two or three
+    settled: float = 0.15  # chosen: relative change of half widths below which the fit ends
     fit_accuracy: float = 1e-2  # chosen: of the density that the box is fitted to
-    tail: float = 1e-3  # chosen: mass outside a box that coarse grids see, to be extrapolated from
+    # chosen: the tails are extrapolated from the distance beyond which there is so much mass, which
+    # coarse grids still resolve
+    tail: float = 1e-3
     normal_tail: float = 3.29  # derived: standard deviations beyond which a normal law has `tail`
-    widening: float = 1.5  # chosen: most that one fit may widen the box
-    # chosen: grid points by the number of variables, some minutes and gigabytes
+    widening: float = 1.5  # chosen: largest factor by which one fit may widen the box
+    # chosen: largest number of grid points by that of variables, some minutes and gigabytes
     largest: Mapping[int, int] = field(
         default_factory=lambda: {2: 120_000, 3: 600_000, 4: 2_500_000}
     )
@@ -78,30 +87,32 @@ class UniformRefinement:
     """Grids of two variables that are refined in both."""
 
     highest: int = 4  # chosen: last level; what needs more is left to the combination technique
-    safety: float = 2.0  # chosen: times the difference of two levels
-    # chosen: a level reduces the error at most so many times; if the change is smaller still, the
+    safety: float = 2.0  # chosen: the error is so many times the difference of two levels
+    # chosen: largest factor by which a level reduces the error; if the change falls by more, the
     # error has changed its sign
     gain: float = 30.0
-    boxed: int = 1  # chosen: level on which a larger box is tried; on finer ones it matters less
+    boxed: int = 1  # chosen: level on which a larger box is tried; its effect needs no finer one
 
 
 @dataclass(frozen=True)
 class CombinationTechnique:
-    """How surpluses that were not computed are bounded."""
+    """How surpluses that were not computed are estimated."""
 
-    relapse: float = 0.25  # chosen: part of the surplus before the last, if that is small by chance
-    mixed: float = 0.25  # chosen: part of a surplus that is left if another variable is raised too
+    # chosen: a surplus is taken to be at least this part of the one two levels below, because the
+    # one directly below may be small by chance
+    relapse: float = 0.25
+    mixed: float = 0.25  # chosen: factor on surpluses where two or more variables are raised
 
 
 @dataclass(frozen=True)
 class PotentialWells:
     """Which wells of a potential hold a path."""
 
-    depth: float = 20.0  # chosen: of the box that is searched, in temperatures
-    points: int = 4001  # chosen: of the search
-    stiff: float = 1e6  # chosen: n whose box is searched at n = inf
-    barrier: float = 2.0  # chosen: temperatures below which a barrier holds no path up for long
-    most: int = 4  # chosen: wells of one variable, the deepest; bounds the cost
+    depth: float = 20.0  # chosen: of the box that is searched, see `mesh.box.half_widths`
+    points: int = 4001  # chosen: at which each potential is evaluated
+    stiff: float = 1e6  # chosen: at n = inf the box of this n is searched
+    barrier: float = 2.0  # chosen: lower barriers, in temperatures, hold no path up for long
+    most: int = 4  # chosen: wells of one variable, of which the deepest are kept; bounds the cost
 
 
 BOX = Box()

@@ -20,7 +20,7 @@ from nonsmooth.scenes.scene import Scene
 
 @dataclass(frozen=True)
 class _Solved:
-    """Values on one grid, and what else than the grid makes inexact in them."""
+    """Values on one grid, and the part of their error that is not due to the grid."""
 
     level: int
     grid: Grid
@@ -49,8 +49,8 @@ def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
     grid : Grid
         Its levels do not matter.
     solve : callable
-        Takes a grid; returns values and what else than the grid makes inexact in them, arrays of
-        one shape.
+        Takes a grid; returns values and the part of their error that is not due to the grid, such
+        as that of the solver, in arrays of one shape.
     share : callable
         Takes errors and values; returns the largest error as a part of the tolerance.
 
@@ -58,11 +58,11 @@ def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
     -------
     Refined
         The error is the sum of three parts: twice the difference of the last two levels, twice
-        what a larger box changes, and twice what is inexact. Errors may change their sign between
-        levels, so that two of them agree by chance: the difference is taken to be at least that of
-        the two levels before, divided by the most that a level gains. It is not met if the
-        tolerance is out of reach, or if a level changes the values by more than half of what the
-        one before did.
+        what a larger box changes, and twice the error that is not due to the grid. Errors may
+        change their sign between levels, so that two levels agree by chance. Therefore the
+        difference is taken to be at least that of the two levels before, divided by the largest
+        factor that a level gains. The refinement ends without success if the tolerance is out of
+        reach, or if a level changes the values by more than half of what the one before did.
     """
     chosen = tuning.UNIFORM_REFINEMENT
 
@@ -95,7 +95,11 @@ def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
 
 
 def _changes(values):
-    """Return what each level changes: at least what the one before did, over the most it gains."""
+    """Return how much each level changes the values.
+
+    It is taken to be at least the change by the level before, divided by the largest factor that a
+    level gains.
+    """
     changes = []
     for coarse, fine in pairwise(values):
         gained = changes[-1] / tuning.UNIFORM_REFINEMENT.gain if changes else 0.0

@@ -1,7 +1,8 @@
 """What is studied: a mechanical model, its noise and the observable, in one object, the scene.
 
-A scene holds the equations of motion as formulas. All solvers read them from here: the drift, the
-smallest set of variables that determines the observable, the kinks of the penalty, the symmetries.
+A scene holds the equations of motion as formulas. All solvers take from it what they need: the
+drift, the smallest set of variables that determines the observable, the kinks of the penalty, the
+symmetries.
 Nothing is solved in this package.
 
 - `scene.Scene`: model, noise, potential U, damping C_b, penalization n, observable g, start;
@@ -13,6 +14,7 @@ Nothing is solved in this package.
 - `formulas.parse`, `formulas.vectorised`: text to sympy, sympy to numpy, without `eval`
 - `symbols`: the variables zeta, eta, y, x and the damping C_b
 - `thresholds.bounds`: the two levels of a threshold
-- `equations`: Table 2 with undefined functions; `equations.specialise` puts in a scene's own
+- `equations`: Table 2 of the paper with undefined functions for potentials and penalties;
+  `equations.specialise` replaces them by those of a scene
 - `relaxation.rate_at_infinity`: how fast paths come back from far out
 """

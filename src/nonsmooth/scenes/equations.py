@@ -1,7 +1,7 @@
-"""The equations of Table 2, with undefined functions for the potentials and penalties.
+"""The equations of Table 2 of the paper, with undefined functions for potentials and penalties.
 
 The table is typeset from these expressions. `specialise` puts a scene's own functions in their
-place; the tests compare the result with what the kernels of the simulation do.
+place. The tests compare the result with what the kernels of the simulation do.
 """
 
 import sympy

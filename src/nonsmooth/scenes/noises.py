@@ -1,7 +1,7 @@
 """The three noises of the paper, and how to add one: white, Langevin, Hamiltonian (Table 2).
 
 `Noise` is the contract. `White`, `Langevin` (type 1) and `Hamiltonian` (type 2) fulfil it;
-`OrnsteinUhlenbeck` and `KanaiTajimi` are those of types 1 and 2 whose equations are linear.
+`OrnsteinUhlenbeck` and `KanaiTajimi` make noises of types 1 and 2 with linear equations.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Noise(Protocol):
     Attributes
     ----------
     kind : str
-        Name of the kind, unlike those of other kinds.
+        Name of the kind, which no other kind of noise has.
     title : str
         What it is called in messages and captions.
     driven : sympy.Symbol
@@ -60,14 +60,14 @@ def _require_positive(name: str, value: float) -> None:
 
 
 def langevin_drift(potential: sympy.Expr) -> dict[sympy.Symbol, sympy.Expr]:
-    """Return {eta: drift} of eq. (noise1) for a potential v(eta)."""
+    """Return {eta: drift} of eq. (1) of the paper for a potential v(eta)."""
     return {eta: -sympy.diff(potential, eta)}
 
 
 def hamiltonian_drift(
     hamiltonian: sympy.Expr, dissipation: sympy.Expr
 ) -> dict[sympy.Symbol, sympy.Expr]:
-    """Return {zeta: B_1, eta: B_2} of eq. (defB1B2) for H(eta, zeta) and F(eta, zeta)."""
+    """Return {zeta: B_1, eta: B_2}, eq. (4) of the paper, for H(eta, zeta) and F(eta, zeta)."""
     slope = sympy.diff(hamiltonian, zeta)
     return {zeta: -sympy.diff(hamiltonian, eta) - dissipation * slope, eta: slope}
 
@@ -100,7 +100,7 @@ class White:
 
 @dataclass(frozen=True)
 class Langevin:
-    """Colored noise of type 1, d eta = -v'(eta) dt + sigma dW (eq. noise1).
+    """Colored noise of type 1, d eta = -v'(eta) dt + sigma dW (eq. (1) of the paper).
 
     Parameters
     ----------
@@ -112,7 +112,8 @@ class Langevin:
     Raises
     ------
     SceneError
-        If v is not confining, v'(eta) eta >= r eta^2 for large |eta| (eq. cond-boldvprime).
+        If v is not confining. The paper asks for v'(eta) eta >= r eta^2 for large |eta|, its
+        eq. (2).
     """
 
     potential: str
@@ -147,7 +148,9 @@ class Langevin:
 
 @dataclass(frozen=True)
 class Hamiltonian:
-    """Colored noise of type 2 (eq. noise2): d zeta = B_1 dt + sigma dW, d eta = B_2 dt.
+    """Colored noise of type 2: d zeta = B_1 dt + sigma dW, d eta = B_2 dt.
+
+    This is eq. (3) of the paper; eq. (4) has B_1 and B_2.
 
     Parameters
     ----------
@@ -161,8 +164,8 @@ class Hamiltonian:
     Raises
     ------
     SceneError
-        If H does not grow at infinity in every direction or F is negative there
-        (necessary for eqs. T117 and T120).
+        If H does not grow at infinity in every direction, or F is not positive there. The
+        paper's assumptions (T117) and (T120) are not checked beyond that.
     """
 
     H: str

@@ -2,9 +2,9 @@
 
 Both functions, |y| and the indicator chi_K of K = [-1, 1], are even. The derivative of their
 regularisation is odd and piecewise linear: its slope is `inner` up to `knot` and `outer` beyond.
-These three numbers define a penalty. The regularised potential, its derivative (the penalty force),
-the exact flows of the simulation, the meshes of the solvers on grids and the typeset tables are all
-derived from them.
+These three quantities, functions of n, define a penalty. The regularised potential, its derivative
+(the penalty force), the exact flows of the simulation, the meshes of the solvers on grids and the
+typeset tables are all derived from them.
 """
 
 from dataclasses import dataclass, replace

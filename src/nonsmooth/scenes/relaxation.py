@@ -1,4 +1,4 @@
-"""How fast a scene comes back from far out, where its drift is linear."""
+"""How fast the state comes back from far out, where the drift is linear."""
 
 import itertools
 import math
@@ -14,10 +14,12 @@ from nonsmooth.scenes.scene import Scene
 
 
 def rate_at_infinity(scene: Scene) -> Estimate:
-    """Rate at which P_t V_n / V_n decays far out, which no rate in the V_n-norm exceeds.
+    """Rate at which the mean of V_n(Z_t), divided by V_n(Z_0), decays if Z_0 is far out.
 
-    Far out V_n is quadratic and the drift is linear with a matrix J. Paths are exp(J t) z there,
-    and the rate is twice that of the slowest eigenvalue of J.
+    V_n is the Lyapunov function, eq. (13) of the paper. No rate of convergence in the norm weighted
+    with V_n (Theorem 5 of the paper) can be larger. Far out V_n is quadratic, noise does not
+    matter, and the drift is linear with a matrix J: paths are exp(J t) z there, and the rate is
+    twice that of the slowest eigenvalue of J.
 
     Parameters
     ----------
@@ -27,7 +29,7 @@ def rate_at_infinity(scene: Scene) -> Estimate:
     Returns
     -------
     Estimate
-        The error is the difference of two distances, and rounding.
+        The error is the difference of the rates at two distances, plus rounding.
 
     Raises
     ------
@@ -53,7 +55,7 @@ def rate_at_infinity(scene: Scene) -> Estimate:
                 "potentials that grow quadratically"
             )
     value, other = (-2 * float(np.linalg.eigvals(part).real.max()) for part in (far, near))
-    # where eigenvalues coincide, rounding moves them by its square root
+    # where eigenvalues coincide, they are in error by the square root of the rounding error
     rounding = 4 * math.sqrt(np.finfo(float).eps) * float(np.linalg.norm(far))
     error = abs(value - other) + rounding
     return Estimate(value, error, "linear drift", time.perf_counter() - began)

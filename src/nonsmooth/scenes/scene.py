@@ -65,7 +65,7 @@ class Scene:
         self._warn_if_g_grows()
 
     def _check(self):
-        """Put names and numbers into their usual form; refuse what is not a scene."""
+        """Bring the arguments into their usual form and refuse those that make no scene."""
         self._check_model_and_noise()
         self._check_numbers()
         self._check_start()
@@ -77,7 +77,8 @@ class Scene:
             )
 
     def _check_model_and_noise(self):
-        if isinstance(self.model, Model):  # one that has a known name goes by it
+        # a known model is stored by its name, so that scenes made either way are equal
+        if isinstance(self.model, Model):
             if MODELS.get(self.model.name) == self.model:
                 self._set("model", self.model.name)
         else:
@@ -128,9 +129,9 @@ class Scene:
         object.__setattr__(self, name, value)
 
     def _warn_if_not_confined(self):
-        """Warn if U_n grows less than quadratically (hyp:HU2b); reads the formula of U.
+        """Warn if U grows less than quadratically, against assumption (HU2) of the paper.
 
-        With obstacles the penalty is part of U_n and confines.
+        There is no warning where the penalty is part of the potential U_n, because it confines.
         """
         ends = np.outer([-1, 1], tuning.FAR_OUT.distances)
         with np.errstate(all="ignore"):
@@ -146,7 +147,7 @@ class Scene:
             )
 
     def _warn_if_g_grows(self):
-        """Warn unless g^2 <= C V_n, which Theorem thm3 asks for."""
+        """Warn unless g^2 <= C V_n, which Theorem 6 of the paper asks for."""
         if self.grows_too_fast:
             warnings.warn(
                 f"g = {self.observable!r} violates g**2 <= V, V the Lyapunov function, which grows "
@@ -160,8 +161,8 @@ class Scene:
     def grows_too_fast(self) -> bool:
         """Whether g^2 <= C V_n is violated, as read off the formula of g.
 
-        V_n grows like the energy, |z|^2 + U. The two are compared at the origin and, far out, on
-        the axes and the diagonals.
+        V_n, the paper's Lyapunov function, grows like the energy, |z|^2 + U. The two are compared
+        at the origin and, far out, on the axes and the diagonals.
         """
         if self.observes_penalty_force:
             return False
@@ -185,7 +186,7 @@ class Scene:
 
     @property
     def identity(self) -> tuple:
-        """All that tells scenes apart except n, on which random streams do not depend."""
+        """All that tells scenes apart except n: random streams depend on this and not on n."""
         return (
             self.model if isinstance(self.model, str) else repr(self.model),
             repr(self.noise),
@@ -240,7 +241,7 @@ class Scene:
 
     @cached_property
     def drift(self) -> dict[sympy.Symbol, sympy.Expr]:
-        """F_n of Table 2: a dict from the symbols of `variables` to sympy expressions in n, C_b."""
+        """F_n of the paper's Table 2: maps the symbols of `variables` to expressions in n, C_b."""
         return self.noise.drift | self.mechanics.drift(
             self.potential_expression, self.noise.forcing
         )
@@ -267,7 +268,7 @@ class Scene:
 
     @property
     def is_line(self) -> bool:
-        """Whether the state is the velocity alone with white noise: A is self-adjoint there."""
+        """Whether the state is the velocity alone, with white noise: A is then self-adjoint."""
         return self.state == ("y",) and self.noise.kind == "white"
 
     def is_odd(self) -> bool:

@@ -22,7 +22,7 @@ def bounds(threshold: ArrayLike) -> tuple[float, float]:
     Raises
     ------
     SceneError
-        If it is neither, or nothing can cross it.
+        If it is neither, or 0 is not between the levels, or no path can cross it.
     """
     try:
         levels = np.asarray(threshold, dtype=float)

@@ -1,8 +1,8 @@
 """The mesh of a scene: a box that holds its invariant density, cut into elements.
 
-The state space is unbounded; outside a box the density is too small to matter. Along each variable
-the box is cut into elements whose edges lie on the kinks of the drift and crowd together there, so
-that the solution is smooth within each element.
+The state space is unbounded, but outside a box the density is too small to matter. Along each
+variable the box is cut into elements whose edges lie on the kinks of the drift and crowd together
+there, so that the solution is smooth within each element.
 
 - `box.half_widths`, `box.narrowed`: how large the box must be.
 - `edges.kinks`, `edges.potentials`, `edges.element_edges`: where the elements end.

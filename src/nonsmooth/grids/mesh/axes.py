@@ -19,7 +19,8 @@ from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
 
-# the forcing comes first: for each of its values, the oscillator's equations are solved
+# The forcing comes first: the iterative solver solves the oscillator's equations for each of its
+# values, which are blocks of the matrix in this order.
 ORDER = (eta, zeta, y, x)
 
 
@@ -62,11 +63,13 @@ def axes(
             potential, temperature = wells[symbol]
             edges = resolving(edges, vectorised(potential, (symbol,)), temperature)
         if margin:
-            # beyond a wall its own depth counts, not the distance between the walls
+            # within a wall the margin is relative to the depth of the wall, which may be much
+            # smaller than the half width
             scale = end - kinks(scene)[x] if symbol == x and has_walls(scene, end) else end
             edges = np.concatenate([[-end - margin * scale], edges, [end + margin * scale]])
         if symbol == scene.noise.driven:
-            # odd degrees where there is no kink keep the number of nodes even
+            # Without a kink the number of elements is odd. Odd degrees then make the number of
+            # nodes even, so that symmetry can be used.
             stride = 2 if is_smooth(scene, symbol, end) else 1
             made[symbol] = continuous(edges, 3 + stride * level)
         else:
@@ -75,7 +78,7 @@ def axes(
 
 
 def _layers(symbol, levels):
-    """Return the number of layers towards a kink; they are dear with many variables."""
+    """Return the number of ever smaller elements towards a kink; few with many variables."""
     if len(levels) <= 2:
         return 2 + levels[symbol]
     chosen = tuning.ELEMENTS

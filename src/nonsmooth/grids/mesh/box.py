@@ -14,10 +14,10 @@ from nonsmooth.scenes.symbols import eta, x, y, zeta
 
 
 def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
-    """Half widths of a box that holds the invariant density, possibly with much to spare.
+    """Half widths of a box that holds the invariant density; the box may be much too large.
 
     Those of colored noise come from its own density. Those of the oscillator come from the energy
-    that the noise can feed into a damped linear one.
+    that the noise can feed into a damped linear oscillator.
 
     Parameters
     ----------
@@ -36,8 +36,9 @@ def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
         power = noise.sigma**2
     else:
         ends = _of_noise(noise, depth)
-        # the spectral density of the forcing is at most 2 var(eta) / (relaxation rate), of which
-        # 2 widths^2 / depth is an estimate
+        # A forcing acts like white noise of the intensity sigma^2 = 2 var(eta) times its relaxation
+        # time, or less. If its density is about normal, var(eta) is ends^2 / (2 depth). The factor
+        # 4 leaves room for relaxation times above 1.
         power = 4 * ends[eta] ** 2 / depth
     speed = math.sqrt(power * depth / scene.damping)
     if eta in ends:
@@ -117,7 +118,7 @@ def _of_displacement(scene, speed, forcing):
     """Half width of the displacement, given those of the velocity and of the forcing."""
     search = tuning.BOX
     kink, _, outer = scene.mechanics.penalty.at(scene.n)
-    if scene.mechanics.is_plastic:  # inward drift beyond, for every velocity
+    if scene.mechanics.is_plastic:  # farther out the drift leads inward, for every velocity
         return kink + search.spare * speed / outer
     # the potential energy there is the kinetic energy of the fastest velocity
     reach = np.geomspace(*search.displacements)

@@ -1,4 +1,4 @@
-"""Where the elements of a scene's variables end: on the kinks, graded towards them."""
+"""The edges of the elements: they lie on the kinks, and elements become smaller towards them."""
 
 from collections.abc import Callable, Mapping
 
@@ -30,9 +30,10 @@ def kinks(scene: Scene) -> dict[Symbol, float]:
     kink, inner, _ = scene.mechanics.penalty.at(scene.n)
     found = {scene.mechanics.argument: kink}
     if not scene.mechanics.is_friction:
-        found[y] = 0.0  # where the displacement turns back at a wall
+        found[y] = 0.0  # the velocity at which the displacement turns back at a wall
     elif "eta" in scene.state and "x" not in scene.state:
-        found[eta] = kink * (inner + scene.damping)  # the forcing that overcomes friction
+        # the forcing that overcomes friction
+        found[eta] = kink * (inner + scene.damping)
     return found
 
 
@@ -77,7 +78,7 @@ def element_edges(scene: Scene, symbol: Symbol, end: float, depth: int) -> np.nd
     if symbol == y:  # the kink of friction, whose distance from 0 is the finest scale there is
         finest *= chosen.ratio**chosen.coarser_at_friction
     outward = _beyond(scene, end - kink, finest)
-    if symbol == y:  # within, velocities follow the forcing up to the kink
+    if symbol == y:  # between the kinks friction is viscous, and velocities follow the forcing
         inward = _towards(kink, kink * chosen.stopping)
     else:
         inward = _towards(kink, min(finest, kink / 2))
@@ -98,10 +99,11 @@ def _beyond(scene, beyond, finest):
     chosen = tuning.ELEMENTS
     if not scene.mechanics.in_potential:
         return _towards(beyond, min(finest, beyond * chosen.stopping))
-    # an elastic wall is as deep as the box, however stiff: the motion in it turns through
-    # the plane of y and sqrt(n) x, and the solution is as curved there as it is in y
+    # In an elastic wall the state turns in the plane of y and sqrt(n) x, however stiff the wall is.
+    # The solution then bends over the depth of the wall no more than it does over the range of y,
+    # so that there is no need for smaller elements towards the kink.
     outward = _towards(beyond, min(finest, beyond / 8))
-    if scene.dimension <= 2:  # elements are dear with more
+    if scene.dimension <= 2:  # with more variables these elements are too expensive
         outward = np.append(outward, beyond * np.array(chosen.within_wall))
     return outward
 
@@ -122,7 +124,10 @@ def _both_sides(positive):
 def potentials(
     scene: Scene, ends: Mapping[Symbol, float]
 ) -> dict[Symbol, tuple[sympy.Expr, float]]:
-    """Potential in which each variable moves, and the temperature.
+    """Potential in which each variable moves, and its temperature.
+
+    The temperature is the one at which exp(-potential / temperature) is the invariant density, or
+    an estimate of it.
 
     Parameters
     ----------
@@ -177,7 +182,8 @@ def resolving(edges: np.ndarray, potential: Callable, temperature: float) -> np.
     chosen = tuning.ELEMENTS
     place = np.linspace(0, 1, chosen.samples + 1)
     values = potential(edges[:-1, None] + np.diff(edges)[:, None] * place)
-    # curvature times the element's width squared over 8, by how much it bends the potential
+    # the curvature times the element's width squared over 8: by how much the potential deviates
+    # from a straight line over the element
     bend = np.diff(values, 2, axis=1) * chosen.samples**2 / 8
     lowest = bend.min(axis=1)
     excess = np.maximum(bend.max(axis=1) - lowest, -lowest) / temperature

@@ -18,7 +18,7 @@ def oscillator(
     potential_slope: sympy.Expr,
     forcing: sympy.Expr,
 ) -> dict[sympy.Symbol, sympy.Expr]:
-    """Return the drift of (y, x) common to all models (eq. dynZnFn, Table 2).
+    """Return the drift of (y, x) common to all models (eq. (5) and Table 2 of the paper).
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def oscillator(
 
 @dataclass(frozen=True)
 class Model:
-    """A mechanical model: what its penalty is, what it reads and where it acts.
+    """A mechanical model: what its penalty is, which variable it reads and where it acts.
 
     How to add one: make an instance in a file of its own and hand it to `Scene(model=...)`;
     nothing else has to be changed. Everything that the library asks of a model is a property of
@@ -60,13 +60,14 @@ class Model:
     Attributes
     ----------
     name, title : str
-        The name tells models apart; it must be unique, parameters included.
+        The name tells models apart. A model with parameters has them in its name, see
+        `examples/dead_zone.py`. The title is for messages and captions.
     inequality : str
         Which of the paper's two stochastic variational inequalities: ``"SVI-1"``, ``"SVI-2"``.
     penalty : Penalty
         Its potential and force, with the position of the kinks.
     argument : sympy.Symbol
-        The variable whose penalty it is.
+        The variable that the penalty reads.
     equation : sympy.Symbol
         The equation of motion in which the penalty force stands.
     force_name : str
@@ -75,7 +76,8 @@ class Model:
     Raises
     ------
     SceneError
-        If the penalty neither acts in one of the three ways nor grows with the displacement.
+        If the penalty acts in none of the three ways, or reads the displacement and does not grow
+        with it.
     """
 
     name: str
@@ -153,7 +155,8 @@ class Model:
     def drift(self, potential: sympy.Expr, forcing: sympy.Expr) -> dict[sympy.Symbol, sympy.Expr]:
         """Return the drift of (y, x) for a potential U(x) and a forcing term (Table 2).
 
-        The force of a spring is entered as such; it is the derivative of `added_potential`.
+        The force of a spring is added to U'(x) as a formula of its own, because it is simpler than
+        the derivative of `added_potential`, which it equals.
         """
         slope = sympy.diff(potential, x) + (self.penalty_force if self.in_potential else 0)
         return oscillator(self.velocity_penalty, self.displacement_penalty, slope, forcing)
