@@ -1,6 +1,7 @@
 """Intervals contain the truth as often as they say: a small version of the benchmark."""
 
 import numpy as np
+import pytest
 from scipy import stats
 
 from benchmarks.coverage import coverage
@@ -9,6 +10,7 @@ RUNS = 150
 FALSE_ALARM = 1e-4
 
 
+@pytest.mark.slow
 def test_coverage():
     """Every quantity within what chance allows about 95 %, itself allowed to be off by 2 %.
 

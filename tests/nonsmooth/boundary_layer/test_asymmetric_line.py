@@ -25,6 +25,7 @@ def test_difference_of_the_extrapolation_lengths(skewed):
     assert found.order == 2
 
 
+@pytest.mark.slow
 def test_cumulants(skewed):
     """D, C and B are the first derivatives of the largest eigenvalue of A + q g at q = 0."""
     found, _ = skewed
@@ -54,6 +55,7 @@ def test_limit_of_odd_g():
     assert found.h == pytest.approx(odd.h, abs=2e-5)
 
 
+@pytest.mark.slow
 def test_mirrored_scene():
     """Its extrapolation lengths are swapped, within the errors; D is that of the quadrature."""
     for side, other in (("lower", "upper"), ("upper", "lower")):
@@ -65,6 +67,7 @@ def test_mirrored_scene():
     assert abs(2 * found.diffusion - gamma2) <= 2 * errors.diffusion + 1e-10
 
 
+@pytest.mark.slow
 def test_odd_g_on_the_whole_grid(monkeypatch):
     """Kappa is that of the half grid on both sides."""
     monkeypatch.setattr(ns.Scene, "is_odd", lambda scene: False)

@@ -9,6 +9,7 @@ from nonsmooth.boundary_layer.symmetric_line import layer_constants
 from references import FRICTION, GAMMA2, KAPPA
 
 
+@pytest.mark.slow
 def test_kappa_of_ornstein_uhlenbeck():
     """Without friction kappa = -zeta(1/2) sigma / (sqrt(2) C_b^(3/2)) (Marshall & Watson)."""
     for damping in (0.1, 0.3, 1.0, 5.0):
@@ -19,6 +20,7 @@ def test_kappa_of_ornstein_uhlenbeck():
         assert found.error <= 1e-8
 
 
+@pytest.mark.slow
 def test_kappa3_of_ornstein_uhlenbeck():
     """Waves see the phase -sum atan(k / mu), with mu^2 = 2 C_b^3 j - k^2 (Marshall & Watson).
 

@@ -7,6 +7,7 @@ import pytest
 import nonsmooth as ns
 
 
+@pytest.mark.slow
 def test_ornstein_uhlenbeck():
     """A spring too weak to matter: the closed form of one variable, by the solver of two."""
     found = ns.extrapolation_length(ns.Scene("elasto_plastic", potential="1e-9*x**2"))
@@ -16,6 +17,7 @@ def test_ornstein_uhlenbeck():
     assert found.error <= 1e-3
 
 
+@pytest.mark.slow
 def test_yielding_displacement():
     """The displacement crosses b when the plastic strain crosses b - 1, for it yields at x = 1.
 

@@ -8,6 +8,7 @@ from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from support import coarse_ordinates
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "scene", [COLORED_FRICTION, PLASTIC_STRAIN, OBSTACLE], ids=["friction", "plastic", "obstacle"]
 )

@@ -8,6 +8,7 @@ from nonsmooth.kinetic.ordinates_line import ordinates
 from references import MIRRORED, SKEWED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("z", [0.7, 0.3 + 2j, -0.5 + 2j])
 def test_transform_without_symmetry(z):
     """Converges in the degree, and the mirrored scene has the mirrored walls."""

@@ -20,6 +20,7 @@ def test_radau_is_exact_to_its_order():
         assert np.allclose((matrix @ nodes**k)[stages], exact[stages], rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("threshold", [(-1.0, 1.0), (-1.0, np.inf), (-np.inf, 1.0)])
 def test_march_against_modes(threshold):
     """March and modes agree to 1e-8 at a depth of 15, where modes have lost some digits."""

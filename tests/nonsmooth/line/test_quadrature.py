@@ -141,6 +141,7 @@ def random_scene(rng):
     return scene, g, (kink, jump)
 
 
+@pytest.mark.slow
 def test_honest_on_random_observables():
     """Value, mean and their errors against 60 digits inside, 20 outside."""
     rng = np.random.default_rng(20240)

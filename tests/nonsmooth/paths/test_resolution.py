@@ -10,6 +10,7 @@ from nonsmooth.paths.simulation import simulate
 from references import FALSE_ALARM, FRICTION
 
 
+@pytest.mark.slow
 def test_tolerance_is_met():
     """The variance within tol of the reference: error bars and bias included, step chosen."""
     limit = ns.Scene("friction", n=np.inf)

@@ -137,6 +137,7 @@ class TestOrder:
         biases = [linear_second_moment(name, scene, h) - exact for h in (0.05, 0.025)]
         assert abs(np.log2(biases[0] / biases[1]) - SCHEMES[name].smooth_order) < 0.2
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         ("name", "published"),
         [

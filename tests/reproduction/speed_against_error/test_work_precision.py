@@ -115,6 +115,7 @@ class TestReferences:
         value, error = (float(found[name][0]) / 100 for name in ("v", "v_error"))
         assert abs(script("pde")["long_run"](n, 100.0) - value) <= error + 1e-13
 
+    @pytest.mark.slow
     @pytest.mark.parametrize(("p", "published"), [(1, W[1]), (1000, W[1000])])
     def test_inversion_on_a_line(self, script, p, published):
         """It agrees with the seven digits that are published."""
@@ -148,6 +149,7 @@ class TestPathwise:
 class TestScripts:
     """Each measures every method at tiny sizes."""
 
+    @pytest.mark.slow
     def test_monte_carlo(self, script):
         """Errors of about a standard error, sqrt(2/paths) v/T, and larger biases of first order."""
         data = script("monte_carlo")["monte_carlo"](
