@@ -12,14 +12,17 @@ import numpy as np
 import pandas as pd
 import sympy
 from mpmath import mp
-from tests.test_quadrature import Reference
-from tests.test_quadrature import random_scene as random_velocity
-from tests.test_refinement import linear_reference, random_linear
-from tests.test_wells import langevin_growth
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
 from nonsmooth.scenes.symbols import x
+from tests.exact_gamma2 import (
+    Reference,
+    langevin_gamma2,
+    linear_reference,
+    random_linear,
+    random_velocity,
+)
 
 POTENTIALS = ("{a}*x**2/2", "{a}*x**2/2 + {b}*cos(3*x)", "x**2/2 + {a}*exp(-2*x**2)", "{a}*x**4/4")
 FORCINGS = ("{a}*eta**2/2", "eta**4/4 + {a}*eta**2/2", "eta**4/4 - {a}*eta**2/2")
@@ -67,7 +70,7 @@ def friction_balance(rng):
     noise, damping = ns.Langevin(formula(rng, FORCINGS), rng.uniform(0.7, 1.5)), rng.uniform(0.3, 3)
     n = 10 ** rng.uniform(0, 4)
     g = f"{damping!r}*y + max(min({n!r}*y, 1), -1)"
-    return ns.Scene("friction", noise, n, damping, observable=g), 1e-5, langevin_growth(noise)
+    return ns.Scene("friction", noise, n, damping, observable=g), 1e-5, langevin_gamma2(noise)
 
 
 def nonlinear(rng):

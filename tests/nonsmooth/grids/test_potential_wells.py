@@ -4,43 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import cumulative_simpson, simpson
 
 import nonsmooth as ns
+from exact_gamma2 import langevin_gamma2
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import potential_wells, tuning
-from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.symbols import eta
 from nonsmooth.statistics import tuning as statistics_tuning
 from references import FRICTION
-
-
-def langevin_growth(noise):
-    """gamma^2 of g = eta under a noise of type 1, sigma^2 int u'^2 m by Simpson's rule.
-
-    Returns
-    -------
-    value, error : float
-        The error is the difference to a grid twice as coarse; the rule is of fourth order.
-    """
-    v = vectorised(noise.potential_expression, (eta,))
-    rate = 2 / noise.sigma**2
-    end = 1.0
-    while rate * (min(v(end), v(-end)) - np.min(v(np.linspace(-end, end, 2001)))) < 60:
-        end *= 1.1
-
-    def integral(points):
-        place = np.linspace(-end, end, points)
-        depth = rate * v(place)
-        mass = np.exp(depth.min() - depth)
-        mass /= simpson(mass, x=place)
-        source = (place - simpson(place * mass, x=place)) * mass
-        left = cumulative_simpson(source, x=place, initial=0)
-        flux = np.where(place < 0, left, left - left[-1])
-        return noise.sigma**2 * simpson((rate * flux) ** 2 / mass, x=place)
-
-    value = integral(80_001)
-    return value, abs(value - integral(40_001))
 
 
 @pytest.mark.parametrize("barrier", [0.5, 2.0, 8.0])
@@ -53,7 +23,7 @@ def test_the_forcing_may_mix_slowly(barrier):
     noise = ns.Langevin(f"eta**4/4 - {depth}*eta**2/2")
     scene = ns.Scene("friction", noise, n=20, observable="y + max(min(20*y, 1), -1)")
     found = ns.asymptotic_variance(scene, tol=1e-4)
-    value, error = langevin_growth(noise)
+    value, error = langevin_gamma2(noise)
     assert abs(found.value - value) <= found.error + error
     assert found.error <= 1e-4 * found.value
 

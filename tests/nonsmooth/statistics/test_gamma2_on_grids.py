@@ -2,56 +2,11 @@
 
 import numpy as np
 import pytest
-import scipy.linalg
-import sympy
-from scipy.integrate import quad
 
 import nonsmooth as ns
+from exact_gamma2 import linear_reference, random_linear
 from nonsmooth.errors import ToleranceError
-from nonsmooth.scenes.symbols import STATE_VARIABLES, x, y
 from references import GAMMA2_OBSTACLE, OBSTACLE
-
-
-def linear_reference(scene, square):
-    """gamma^2 of g = x or g = x^2 of a linear scene, from its covariance.
-
-    The penalty of the scenes below is too weak to matter: its force is n (|x| - 1).
-    """
-    symbols = [s for s in STATE_VARIABLES if s.name in scene.state]
-    linear = {s: scene.noise.drift.get(s) for s in symbols if s in scene.noise.drift}
-    linear |= {
-        y: scene.noise.forcing - sympy.diff(scene.potential_expression, x) - scene.damping * y,
-        x: y,
-    }
-    drift = np.array(sympy.Matrix([linear[s] for s in symbols]).jacobian(symbols), dtype=float)
-    kick = np.diag([scene.noise.sigma * (s == scene.noise.driven) for s in symbols])
-    covariance = scipy.linalg.solve_continuous_lyapunov(drift, -kick @ kick)
-    place = symbols.index(x)
-    if not square:
-        return -2 * np.linalg.solve(drift, covariance)[place, place]
-    slowest = -np.linalg.eigvals(drift).real.max()
-
-    def squared(t):
-        return (scipy.linalg.expm(t * drift) @ covariance)[place, place] ** 2
-
-    return 4 * quad(squared, 0, 20 / slowest, epsrel=1e-10, limit=400)[0]
-
-
-def random_linear(generator_, noise):
-    """Draw a linear scene: an obstacle too soft to be felt."""
-    draw = generator_.uniform
-    noises = {
-        "white": ns.White(sigma=draw(0.5, 2)),
-        "langevin": ns.OrnsteinUhlenbeck(draw(0.5, 2), draw(0.5, 2)),
-        "hamiltonian": ns.KanaiTajimi(draw(0.5, 2), draw(0.5, 2), draw(0.5, 2)),
-    }
-    return {
-        "model": "obstacle",
-        "noise": noises[noise],
-        "n": 1e-9,
-        "damping": draw(0.3, 3),
-        "potential": f"{draw(0.5, 2):.3f}*x**2/2",
-    }
 
 
 @pytest.mark.parametrize("seed", range(8))
