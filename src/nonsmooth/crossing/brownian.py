@@ -7,8 +7,8 @@ z = pi^2 T / (2 L^2), it stays between them up to T with the probability
   = erf(near/r) - sum_k (-1)^k [erfc((k L + far)/r) - erfc(((k+1) L + near)/r)]        (images),
 
 the paper's series and the one that Poisson summation makes of it. The images are used where
-near >= sqrt(T), because nothing cancels, or where L >= 10 sqrt(T), because their sum is below
-rounding; the modes elsewhere, where all terms that count have one sign.
+near >= sqrt(T), because nothing cancels there, or where L >= 10 sqrt(T), because the sum over k is
+below rounding there. The modes are used elsewhere; all terms that matter have the same sign there.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ from nonsmooth.scenes.thresholds import bounds
 
 
 def brownian_crossing(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
-    """Probability that W reaches b or the lower level before T, W_star of eq. (defFexplicit).
+    """Probability that W reaches b or the lower level before T, W_star of eq. (34) of the paper.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ def brownian_crossing(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None
     Returns
     -------
     numpy.ndarray
-        Of the shape that the arguments broadcast to. The relative error is some units in the
-        last place, and as many times the exponent where the value is exponentially small; the
-        value is 0 at T = 0 and where it is below the smallest double.
+        Of the shape that the arguments broadcast to. The relative error is some units in the last
+        place, and as many times the exponent where the value is exponentially small. The value is 0
+        at T = 0, and where it is below the smallest double.
 
     Raises
     ------
@@ -103,12 +103,12 @@ def brownian_exit_density(b: float, T: ArrayLike, lower: float) -> np.ndarray:
 
 
 def _round_trips(width):
-    """Lengths of the ways to and fro between the levels, for T < width^2."""
+    """Lengths of the ways back and forth between the levels; enough of them for T < width^2."""
     return 2 * width * np.arange(tuning.BROWNIAN_SERIES.exit_turns)
 
 
 def _modes(b, T, width, weight):
-    """Sum over the eigenfunctions, for T > width^2."""
+    """Sum over the eigenfunctions; enough of them for T > width^2."""
     return sum(
         weight(k) * np.sin(k * np.pi * b / width) * np.exp(-T * (k * np.pi / width) ** 2 / 2)
         for k in tuning.BROWNIAN_SERIES.exit_modes
@@ -164,7 +164,7 @@ class _Path:
         b = np.asarray(b, dtype=float)
         lower = -b if lower is None else np.asarray(lower, dtype=float)
         b, lower, T = np.broadcast_arrays(b, lower, np.asarray(T, dtype=float))
-        # nan is neither, and stays nan
+        # a nan fails none of these tests, and the result is nan, too
         for wrong, need in (
             (b <= 0, "an upper level b > 0"),
             (lower >= 0, "a lower level < 0"),
@@ -206,7 +206,7 @@ class _Path:
         return _decay(z, sum(terms))
 
     def chosen(self, images, modes, at_once):
-        """Take the series that loses nothing, or the value at T = 0."""
+        """Take the series in which nothing cancels, or the value at T = 0."""
         few_images = self.width**2 >= tuning.BROWNIAN_SERIES.images_from * self.T
         by_images = (self.near**2 >= self.T) | few_images
         return np.where(self.began, np.where(by_images, images, modes), at_once)

@@ -3,20 +3,21 @@
 The order k has an error of the order p^(-(k+1)/2); `expansion` has the formulas. Order 1 is for odd
 g, or for the state y with white noise; order 2 for the latter; order 3 for the latter with odd g.
 
-The stated error is the distance of the order to the last one that is known, k, and what that one
-changes as the time is multiplied or divided by exp(R), where R is what the next order may do:
+Let k now be the highest order that is known for the scene. The stated error of an order is its
+distance to the order k, plus the change of the order k when the time is multiplied or divided by
+exp(R). R estimates the effect of the next order, k + 1, as a relative change of the time:
 
     R = a x^((k+1)/2) / (1 + c x^((k-1)/2)),  x = s^2 z / D.
 
-Here s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 is the size of what order 2 changes, and z the
-frequency that matters at this time: its inverse and the logarithmic derivative of the rate of
-passage. Where order 2 is not known, s is the thickness m of the layer. To R is added the relative
-size (m/b) exp(-b/m) of the layer at the start. Where the layer is so thick that order 1 is returned
-to, R grows with m/b instead, and it is at most the time that the layer can explain. The numbers a
-and c are fitted, see `tuning`.
+Here s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 is the size of the terms of order 2. The frequency z
+is the inverse of the time, plus the size of the logarithmic derivative of the rate of passage.
+Where order 2 is not known, s is the thickness m of the layer. With b the distance to the nearer
+threshold, (m/b) exp(-b/m) is added to R for the layer's effect at the start. Where the layer is so
+thick that order 1 replaces the others, R grows with m/b instead. R never exceeds a limit that
+grows with log(1 + 2 m/b). The numbers a and c are fitted, see `tuning`.
 
-Large excursions of a g that grows faster than the theorems allow are not in the error; the scene
-warns of such a g. They make early crossings likelier than all of this.
+Not in the error are large excursions of a g that grows faster than the theorems allow. They make
+early crossings likelier than the formula and its error say; the scene warns of such a g.
 """
 
 from collections.abc import Iterator
@@ -56,15 +57,15 @@ def corrected_crossing(
     p : float
     order : {1, 2, 3}
     tol : float, optional
-        Largest absolute error that is returned; any, unless given.
+        Largest absolute error that is accepted. Unless given, the error may be anything.
     seed, threads
-        Of the constants that are sampled.
+        For constants that are sampled.
 
     Returns
     -------
     value, error : numpy.ndarray, shape (k,)
-        The error is a bound of the distance to the probability at the finite p, from the next
-        orders, and what the formula inherits from its constants.
+        The error bounds the distance to the probability at the finite p: it estimates the next
+        orders, and has what the formula inherits from the errors of its constants.
 
     Raises
     ------
@@ -81,7 +82,7 @@ def corrected_crossing(
         found = formula.orders(times)
         value = found[order - 1]
         error = np.abs(found[-1] - value) + _error_of_last(formula, errors, times, found[-1])
-    else:  # the start is worth more than the way to a threshold: nothing is known
+    else:  # the start, moved by u, is beyond a moved threshold: the formula says nothing
         value, error = np.ones(times.shape), np.ones(times.shape)
     worst = int(np.argmax(error))
     if tol is not None and not error[worst] <= tol:
@@ -94,7 +95,7 @@ def corrected_crossing(
 
 
 def _require_order(scene, order):
-    """Refuse an order that there is not, or not for this scene."""
+    """Refuse an order that does not exist, or not for this scene."""
     if order not in (1, 2, 3):
         raise SceneError(
             f"the corrected formula has the orders 1, 2 and 3, not {order!r}; choose one"
@@ -127,7 +128,7 @@ def _error_of_last(
 
 
 def _next_order(formula, times):
-    """Return the logarithm of the factor of time that the next order may be worth."""
+    """Return R: the next order is taken to multiply or divide the time by exp(R) at most."""
     c, knudsen = formula.constants, formula.knudsen
     frequency = formula.frequency(times)
     x, thick = (
@@ -137,15 +138,15 @@ def _next_order(formula, times):
     rising, falling = tuning.CORRECTED_ERROR.next_order[c.order - 1]
     next_order = rising * x ** ((c.order + 1) / 2)
     next_order /= 1 + falling * x ** ((c.order - 1) / 2)
-    # what the start still sees of the layer, which decays like exp(-1 / knudsen)
+    # the layer's effect at the start, which decays like exp(-1 / knudsen)
     next_order += knudsen * np.exp(-1 / knudsen)
-    # where the layer is thick, order 1 is returned to
+    # where the layer is thick, order 1 replaces the others
     first_order = (1 - formula.weight) * tuning.CORRECTED_ERROR.thick * knudsen * thick
     return formula.weight * next_order + first_order / (1 + thick)
 
 
 def _inherited(formula, errors, times):
-    """Yield what the errors of the constants of the orders 2 and 3 add to that logarithm."""
+    """Yield what the errors of the constants of the orders 2 and 3 add to R."""
     D, frequency = formula.constants.diffusion, formula.frequency(times)
     if errors.order > 1:
         yield (errors.h + max(errors.dipole)) / (D * times)

@@ -1,4 +1,4 @@
-"""Counting paths that cross a threshold, and what a count tells of the probability."""
+"""Counting paths that cross a threshold, and estimates of the probability from the counts."""
 
 import numpy as np
 import scipy
@@ -81,7 +81,7 @@ def first_passage_bias(
     p: float,
     sampling: Sampling,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Measure what halving the time step changes in the crossing probability.
+    """Measure how halving the time step changes the crossing probability.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def bias_of_counts(
     paths = len(fine)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
     factor = 1 / (1 - 2 ** -registry.scheme(scene, "strang").weak_order(scene))
-    # If no path has changed sides, the error is as large as if one had.
+    # If all paths have the same outcome with both steps, the error is as large as if one had not.
     error = np.sqrt(np.maximum(change.var(axis=0), 1 / paths) / paths)
     return factor * change.mean(axis=0), factor * error
 

@@ -7,18 +7,19 @@ the derivation. In short, with the constants of `boundary_layer.constants`:
   farther out than the scene's, and the start is moved to the right by u. Without symmetry the
   passage of the upper threshold is C / (2 D^2) times its distance earlier, and that of the lower
   one later.
-- Order 2 sees these passages on a random clock of the spread beta = B/D^2 - 5 C^2 / (4 D^3), and
-  (S + B/D - h + u^2/2) / D later. If the spread is negative the clock is multiplied by the
-  exponential of beta times the logarithmic derivative of the rate of passage instead.
-- Order 3, for odd g, has two more factors like that: one of kappa3, which moves the thresholds for
-  short waves, and one of r - u h + u^3/3, which moves the start.
+- Order 2 is the mean of these probabilities over a random clock (`random_clock`) of the spread
+  beta = B/D^2 - 5 C^2 / (4 D^3); passages are (S + B/D - h + u^2/2) / D later. If beta is negative,
+  there is no such clock. Then the time is multiplied by the exponential of beta times the
+  logarithmic derivative of the rate of passage.
+- Order 3, for odd g, multiplies the time by two more factors of this kind: one with kappa3, which
+  moves the thresholds for short waves, and one with r - u h + u^3/3, which moves the start.
 
-All orders stay distribution functions at any p: a positive exponent X is taken as X / (1 + X), and
-a passage that is earlier by d multiplies the time t by 1 + d / (t + d), so that no clock runs
-backwards. Where the layer is as thick as the interval the expansion means nothing, and order 1 is
-returned to: the last order has the weight exp(-(2 m / b)^4), where m is the thickness of the layer
-and b the distance to the nearer threshold. Order 2 of odd g is kept at most half as far from order
-3 as order 1 is. All this is smaller than the error of the order.
+Three rules keep every order a distribution function at any p. A positive exponent X is replaced by
+X / (1 + X). If passages are earlier by d, the time t is multiplied by 1 + d / (t + d), so that
+times stay in order. Where the layer is as thick as the interval, the expansion means nothing, and
+order 1 takes over: the last order has the weight exp(-(2 m / b)^4), where m is the thickness of the
+layer and b the distance to the nearer threshold. Besides, order 2 of odd g is kept at most half as
+far from order 3 as order 1 is. All these changes are smaller than the error of the order.
 """
 
 from dataclasses import dataclass
@@ -67,7 +68,7 @@ class Expansion:
 
     @cached_property
     def layer_thickness(self) -> float:
-        """Thickness m of the layer, with all else that the velocity remembers."""
+        """Thickness m of the layer; the effects of dispersion and skewness are part of it."""
         c = self.constants
         dispersion, skewness = self._memory()
         return np.sqrt(max(c.kappa) ** 2 + c.u**2 + dispersion + skewness)
@@ -89,7 +90,7 @@ class Expansion:
 
     @property
     def weight(self) -> float:
-        """Weight of the last order in what is evaluated; the rest is order 1."""
+        """Weight of the last order where it is mixed with order 1."""
         return float(np.exp(-((tuning.ORDERS.thin * self.knudsen) ** 4)))
 
     def orders(self, times: np.ndarray) -> list[np.ndarray]:
@@ -120,7 +121,7 @@ class Expansion:
         return self._mixed(self.constants.order, times)
 
     def frequency(self, times: np.ndarray) -> np.ndarray:
-        """Inverse times over which the rate of passage changes, shape (k,)."""
+        """Return the inverses of the times over which the rate of passage changes, shape (k,)."""
         D = self.constants.diffusion
         late = self._either().slopes(times)[1]
         early = min(self.moved_upper, -self.moved_lower) ** 2 / (4 * D * times**2)
@@ -147,7 +148,9 @@ class Expansion:
             reached = np.maximum(times + passage.lead, 0.0)
             if order > 1:
                 lead = c.h - c.u**2 / 2 - passage.dipole - c.dispersion / D
-                if spread < 0:  # the factor of the clock delays less than a positive spread
+                # a random clock is ahead by its spread, for which B / D makes up in the lead; the
+                # factor that stands for a negative spread is not
+                if spread < 0:
                     lead += D * spread
                 reached = _advanced(reached, lead / D)
 
@@ -159,7 +162,7 @@ class Expansion:
         return np.clip(total, 0.0, 1.0)
 
     def _exponent(self, order, passage, spread, clock):
-        """Logarithm of the factor of a clock."""
+        """Logarithm of the factor by which the time of a clock is multiplied."""
         if order == 1 or (order == 2 and spread >= 0):
             return 0.0
         c = self.constants

@@ -1,4 +1,4 @@
-"""Crossing probabilities by Monte Carlo to a tolerance, which decides on paths and time step."""
+"""Crossing probabilities by Monte Carlo; a tolerance decides on paths and time step."""
 
 import math
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ def least_steps(scene: Scene, time: float, tol: float) -> tuple[float, float]:
     Returns
     -------
     pilot, all : float
-        Of the pilot, and of the fewest paths that meet the tolerance.
+        Steps of the pilot, and steps of the fewest paths that may meet the tolerance.
     """
     steps = time / coarse_step(scene)
     counting = tuning.COUNTING
@@ -65,17 +65,17 @@ def sampled_crossing(
 ) -> tuple[dict, dict]:
     """Count paths; the step and the number of paths follow from `tol` unless given.
 
-    A pilot runs paths with a coarse step and its half. Where hardly any of them cross, or nearly
-    all, it is the answer. Otherwise there are as many paths as confidence limits show to be needed,
-    with a step whose bias, extrapolated by the weak order, fits in. The bias is measured anew, and
-    the step is refined if it does not fit.
+    A pilot runs a few paths with a coarse step and its half. If hardly any of them cross, or nearly
+    all, the pilot may be the answer. Otherwise its confidence limits tell how many paths are
+    needed, and its bias, extrapolated by the weak order, tells the step. The bias is then measured
+    anew, and the step is refined if the bias takes more than its part of the tolerance.
 
     Parameters
     ----------
     scene, threshold, horizons, p, seed, threads, tol, step, paths, precision
         As of `crossing_probability`, the threshold as a pair.
     most : float
-        Steps of all paths, beyond which it is not tried.
+        Largest number of steps of all paths. If more are needed, this raises an error instead.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def sampled_crossing(
     SceneError
         If a parameter is out of range, or a path diverges.
     ToleranceError
-        If `tol` takes too many steps, or a step is so long that halving it does not measure its
+        If `tol` needs too many steps, or a step is so long that halving it does not measure its
         bias.
     """
     if step is not None:
@@ -185,7 +185,7 @@ class _Request:
         return self.halved(step, min(MONTE_CARLO.pilot_paths, fewest), "pilot")
 
     def answer_of_pilot(self, pilot):
-        """Values with half the step of the pilot, None if they are not accurate enough."""
+        """Return values with half the step of the pilot, or None if they are too inaccurate."""
         bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
         crossed, half = pilot.crossed(self.times), 2**-self.order
         off = _distance(crossed, pilot.paths) + half * np.max(np.abs(bias) + error)
@@ -214,7 +214,7 @@ class _Request:
         return _Plan(step, paths, fewest, pilot)
 
     def answer(self, plan):
-        """Count paths, and refine the step until its bias fits in."""
+        """Count paths, and refine the step until its bias is within its part of the tolerance."""
         step, paths = plan.step, plan.paths
         for _ in range(tuning.COUNTING.attempts):
             crossed, paths = self.counted(step, paths)
@@ -235,7 +235,7 @@ class _Request:
         )
 
     def counted(self, step, wanted):
-        """Numbers of crossed paths, and of as many paths as turn out to be wanted."""
+        """Count paths until there are enough; return how many crossed, and how many there were."""
         crossed, done = np.zeros(len(self.horizons), dtype=int), 0
         while done < wanted:
             more = Sampling(
@@ -258,7 +258,7 @@ class _Request:
         return _Halving(step, paths, *coupled(self.scene, self.times, sampling, levels))
 
     def require_possible(self, paths, step, crossed, count):
-        """Refuse what takes too many steps; the message has what `count` paths tell."""
+        """Refuse too many steps; the message has the estimate from the first `count` paths."""
         W, error = crossed[-1] / count, MONTE_CARLO.sigmas / 2 / np.sqrt(count)
         told = f"W = {W:.3g} has an error of {error:.1g}"
         work = tuning.COUNTING.checked * paths
@@ -277,10 +277,11 @@ def _distance(crossed, paths):
 
 
 def _paths_wanted(crossed, paths, tol):
-    """Count paths, in whole blocks, whose limits should be as near as the tolerance asks for.
+    """Return how many paths, in whole blocks, should bring the limits within the tolerance.
 
-    Jeffreys' limits are three standard deviations and `skew` |1 - 2 W| counts away. W is taken a
-    standard deviation nearer to 1/2, if that does not take more than `enlarge` times the paths.
+    Jeffreys' limits are three standard deviations and `skew` |1 - 2 W| counts away. To be careful,
+    W is taken one standard deviation nearer to 1/2 than estimated; but this may not raise the
+    number beyond `enlarge` times the paths so far.
     """
     share, counting = MONTE_CARLO.spread_share * tol, tuning.COUNTING
 

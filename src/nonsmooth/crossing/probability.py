@@ -54,21 +54,22 @@ def crossing_probability(
 
         - ``"deterministic"`` solves an equation for the first passage. It is for the state y with
           white noise and, in up to a minute or two, for two state variables with finite n, odd g
-          and drift, and white or Langevin noise. It is the first choice there, but not if a
-          parameter of another method is given, nor if `tol` is so loose that ``"monte_carlo"``
-          should be faster or, for one variable and odd g, that ``"corrected"`` meets it.
-        - ``"monte_carlo"`` counts paths. It is the choice for three and four state variables, and
-          for two where the solver misses its tolerance.
-        - ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity (eq. equivalent).
+          and drift, and white or Langevin noise. For these scenes it is chosen, with two
+          exceptions: a parameter of another method is given; or `tol` is so loose that
+          ``"monte_carlo"`` should be faster or, for one variable and odd g, that ``"corrected"``
+          meets it.
+        - ``"monte_carlo"`` counts paths. It is chosen for all other scenes, and where the
+          deterministic method misses a tolerance that is loose enough for counting.
+        - ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity, eq. (33) of the paper.
         - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
           order 1/p, p^(-3/2) or p^(-2). For the state y with white noise it has the orders 1 and
           2, and 3 if g is odd; elsewhere it needs odd g and has the order 1.
     tol : float, optional
-        Absolute error wanted. For ``"monte_carlo"`` 1e-2 unless given; the number of paths follows
-        from it (three standard errors are at most three quarters of `tol`) and the time step (its
-        bias is a quarter, measured again and refined if it is not), unless these are given. For
-        ``"deterministic"`` 1e-7 unless given, or 1e-4 for two variables. ``"corrected"`` returns
-        any error unless it is given. ``"asymptotic"`` has none.
+        Absolute error wanted. Unless given, it is 1e-2 for ``"monte_carlo"``, and 1e-7 for
+        ``"deterministic"`` or 1e-4 with two variables. By Monte Carlo the number of paths and the
+        time step follow from it, unless they are given: three standard errors are at most three
+        quarters of `tol`, and the bias of the step is at most a quarter. Without it
+        ``"corrected"`` returns whatever error it has. ``"asymptotic"`` does not take it.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -122,7 +123,7 @@ def crossing_probability(
             break
         except ToleranceError as error:
             failed[name] = error
-    else:  # of all that failed, the solver came closest
+    else:  # if all methods failed, the error of the deterministic one tells most
         raise failed.get("deterministic", failed[name])
     return xr.Dataset(
         {name: ("horizon", value) for name, value in values.items()},
@@ -132,7 +133,7 @@ def crossing_probability(
 
 
 def _by(method, given):
-    """Look up a method, which has to have the parameters that are given."""
+    """Look up a method, and refuse parameters that it does not have."""
     if method not in METHODS:
         raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
     for name in given:
@@ -144,10 +145,10 @@ def _by(method, given):
 def _attempts(scene, horizons, p, given):
     """Choose the methods to try in turn, each with its limits.
 
-    Monte Carlo comes before a solver if its pilot, which tells how many paths are needed, may turn
-    out faster; it is stopped if it does not. It comes last where it may meet a tolerance that the
-    solver misses. The corrected formulas come before both, because their errors tell at once
-    whether they suffice.
+    Monte Carlo comes before a solver if it may be faster. Its pilot tells how many paths are
+    needed; if these are too many, it stops. Monte Carlo comes last if it may meet a tolerance that
+    the solver misses. The corrected formulas come before the solver, because their errors tell at
+    once whether they suffice.
     """
     choice = tuning.METHOD_CHOICE
     if "order" in given:

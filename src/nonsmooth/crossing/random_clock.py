@@ -1,4 +1,4 @@
-"""The random clock that disperses Brownian motion as the memory of the velocity does.
+"""The random clock on which Brownian motion disperses like the integral of g, to order 2.
 
 The clock shows the greatest value that t + sqrt(2 beta) W(t) has had so far; beta > 0 is its
 spread. It reaches s at an inverse Gaussian time of the mean s and the variance 2 beta s. A passage

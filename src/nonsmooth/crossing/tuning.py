@@ -5,19 +5,20 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """What tells which method meets a tolerance first; seconds are those of one core."""
+    """Times that predict which method meets a tolerance first; seconds are those of one core."""
 
-    # of a coarse step of a path, with all that comes on top; fitted: measured on one machine, the
+    # seconds for a coarse step of a path, everything included; fitted: measured on one machine, the
     # choices that follow are checked by benchmarks/requests.py
     seconds_of_step: float = 4e-9
-    # of the deterministic method for one and two variables, for times that grow by the factor
-    # `window`; fitted: as above
+    # seconds of the deterministic method for one and for two variables, for each factor `window`
+    # between the first and the last time; fitted: as above
     seconds_solved: tuple[float, float] = (0.4, 8.0)
     window: float = 20.0
     seconds_corrected: float = 0.05  # of the corrected formula; fitted: as above
     # least error of the corrected formula of the order 3, times p^2; fitted: as above
     least_corrected: float = 0.03
-    pilot_share: float = 0.1  # of the solver's time, which a pilot may cost; chosen: it is lost
+    # part of the solver's time that a pilot may cost; chosen: small, as it may be in vain
+    pilot_share: float = 0.1
     # tolerance and steps up to which Monte Carlo replaces a solver that fails; chosen: minutes
     sampled_tolerance: float = 1e-4
     sampled_steps: float = 1e11
@@ -59,12 +60,14 @@ class RandomClock:
 class Orders:
     """The orders of the corrected formula where the expansion is not small."""
 
-    # order 1 is returned to where the layer is thicker than the distance to the threshold over
-    # this; fitted: errors of one-dimensional scenes, see tests/.../test_corrected_formula.py
+    # order 1 takes over where the layer is thicker than the distance to the threshold divided by
+    # this; fitted: errors of scenes of one variable, tests/nonsmooth/crossing/test_expansion.py and
+    # test_corrected_formula.py
     thin: float = 2.0
     # largest distance of order 2 from order 3, over that of order 1; fitted: as above
     nearer: float = 0.5
-    # no slope is taken where a rate is below exp(-300) of the largest; chosen: above underflow
+    # slopes of the rate of passage are taken only where it is above exp(-300); chosen: there it is
+    # far above underflow
     deepest: float = 300.0
     # relative, of difference quotients; chosen: their error, about its square, is 1e-8 of a
     # correction
@@ -78,10 +81,9 @@ class CorrectedError:
     # a and c for the highest known orders 1, 2 and 3; fitted: errors of a hundred scenes and
     # intervals of one variable, with a margin
     next_order: tuple[tuple[float, float], ...] = ((1.0, 0.0), (0.3, 2.0), (0.6, 2.0))
-    # the same for what is taken of order 1, where the layer is thick; fitted: as above
+    # the factor a for order 1 where it takes over because the layer is thick; fitted: as above
     thick: float = 1.3
-    # the largest logarithm R of a time is the first plus the second times log(1 + 2 m / b);
-    # fitted: as above
+    # R is at most the first number plus the second times log(1 + 2 m / b); fitted: as above
     longest: tuple[float, float] = (1.5, 2.0)
     rounding: float = 1e-15  # of every value; derived: some units in the last place of 1
 
@@ -90,17 +92,19 @@ class CorrectedError:
 class Counting:
     """Sizes of the pilots and runs that count paths."""
 
-    # chosen: level of the pilot's limits of the probability, that of three standard errors
+    # chosen: level of the confidence limits of the probability, that of three standard errors
     confidence: float = 0.997
-    # chosen: paths of the pilot times the tolerance: one that changes sides is an eighth of it
+    # chosen: paths of the pilot, over the inverse of the tolerance. If one path crosses with one
+    # step but not with the other, the measured bias is then about an eighth of the tolerance
     pilot: float = 12.0
-    # fitted: counts by which the limits at that level are off where nothing has crossed
+    # fitted: upper limit at that level, in paths, where none has crossed
     skew: float = 5.1
-    # chosen: largest factor of the paths for a probability that the pilot has not seen
+    # chosen: to be careful, a probability that few paths tell may raise their number by this factor
     enlarge: float = 8
-    # derived: times the work of the paths, as an eighth is run with the step and its half, too
+    # derived: work including the measurement of the bias, over that of the paths alone: an eighth
+    # of the paths is run again with the step and with its half, which is 3/8
     checked: float = 1 + 3 / 8
-    # chosen: runs at a step whose bias fits in by the weak order; one is enough as a rule
+    # chosen: largest number of runs, each with a shorter step; as a rule one is enough
     attempts: int = 3
 
 

@@ -1,8 +1,8 @@
 """The constants of the paper's standing assumptions (HU1)-(HU5), (2), (T117) and (T120).
 
 The assumptions say that constants exist. Here they are computed for given U, v, H and F. Suprema
-are taken over a fine grid up to 1e6 and refined. Smaller lambda, r or delta~ and larger beta or M
-would do as well.
+are taken over a fine grid up to 1e6 and refined. The assumptions also hold with smaller lambda, r
+or delta~ and with larger beta or M.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ from nonsmooth.theory import tuning
 
 @dataclass(frozen=True)
 class Confinement:
-    """Constants of (HU2), (HU3), (HU5) and of Claim 7 for U (U_n for obstacles).
+    """Constants of (HU2), (HU3), (HU5) and of Claim 7 of the paper, for U (U_n for obstacles).
 
     Attributes
     ----------

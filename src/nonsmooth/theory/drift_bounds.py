@@ -1,7 +1,8 @@
-"""The bounds that the proof of Lemma 2 gives for V_n and its drift, to be tested pointwise.
+"""The bounds that the proof of Lemma 2 of the paper gives for V_n and its drift, to be tested.
 
-Claims 7 to 10 bound the terms S_1 to S_4 of A_n V_n + epsilon V_n; the boxed bounds (25), (28) and
-(31) follow from them. The lower bound of V_n is the first step of (HV1).
+Claims 7 to 10 bound the terms S_1 to S_4 of A_n V_n + epsilon V_n. The boxed bounds, eqs. (25),
+(28) and (31) of the paper, follow from them. The lower bound of V_n is the first step of the proof
+of (HV1).
 """
 
 from collections.abc import Mapping
@@ -51,7 +52,7 @@ class Bound:
 
 
 def bound(scene: Scene) -> Bound:
-    """Return the right-hand side of (25), (28), or (31) with Claim 10 mended.
+    """Return the right-hand side of eq. (25), (28) or (31) of the paper, with Claim 10 mended.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def bound(scene: Scene) -> Bound:
 
 
 def noise_bound(scene: Scene, printed: bool = False) -> Bound:
-    """Return the right-hand side of (27), or of (30), which is mended unless `printed`.
+    """Return the right-hand side of eq. (27) of the paper, or of (30), mended unless `printed`.
 
     (T120) gives L Gamma_2 + epsilon Gamma_2 <= K M (1 + delta~) - (delta~ - epsilon) Gamma_2,
     and (T117) Gamma_2 >= K delta~ (eta^2 + zeta^2).
@@ -163,9 +164,10 @@ def noise_drift(scene: Scene, z: Points) -> Pair:
 
 
 def lower_bound(scene: Scene) -> Bound:
-    """Return the first step of (HV1) as a bound of -V_n.
+    """Return the first step of the proof of (HV1) as a bound of -V_n.
 
-    V_{n,2} >= y^2/2 (delta - 1/(delta lambda_1)) + delta lambda_1 x^2/2 + 1, and (T117).
+    It is V_{n,2} >= y^2/2 (delta - 1/(delta lambda_1)) + delta lambda_1 x^2/2 + 1. (T117) bounds
+    what the noise adds.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from nonsmooth.theory import drift_bounds, lyapunov, tuning
 
 @dataclass(frozen=True)
 class Margins:
-    """How far the inequalities are from failing; all are at most 1 and negative where they fail.
+    """How far the inequalities are from failing; margins are at most 1, negative if one fails.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ def _supremum(scene, names, z, value, magnitude):
 
 
 def _margins_of_claims(scene, names, points, reach):
-    """Margins of Claims 7 and 8, of Claim 9 or 10, and of the latter as printed; else 1."""
+    """Margins of Claims 7 and 8, of Claim 9 or 10, and of the latter as printed; 1 without one."""
     mechanical = forcing = forcing_printed = 1.0
     if scene.noise.kind != "white":
         w = grid(scene, tuple(s for s in (zeta, eta) if s in names), points, reach)

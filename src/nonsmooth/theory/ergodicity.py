@@ -1,8 +1,8 @@
-"""V-uniform ergodicity (Theorem 4) and the bound of Poisson solutions (Theorem 5), measured.
+"""V-uniform ergodicity and the bound of Poisson solutions, Theorems 4 and 5 of the paper, measured.
 
-The semigroup is stepped in time, so that the rate of decay owes nothing to eigenvalues. Norms are
-weighted with the paper's own Lyapunov function V_n. They are taken on a box and do not see how long
-a path from infinity takes to come back; far out the drift is linear, and
+The semigroup is stepped in time, so that the rate of decay is found without eigenvalues. Norms are
+weighted with the paper's own Lyapunov function V_n. They are taken on a box, and do not tell how
+long a path from infinity takes to come back. Far from 0 the drift is linear, and
 `scenes.relaxation.rate_at_infinity` has the rate there.
 """
 
@@ -30,7 +30,7 @@ class Bound:
     Attributes
     ----------
     constant, error : float
-        The error is what a finer grid and the width of the box change.
+        The error is the sum of the changes by a coarser grid and by a narrower box, and rounding.
     edge : float
         The same C on the surface of the box; below `constant` unless C grows with the box.
     """
@@ -53,7 +53,8 @@ def decay_rate(scene: Scene, step: float = 0.1) -> Estimate:
     Returns
     -------
     Estimate
-        The error is the sum of what twice the step, a coarser grid and an earlier window change.
+        The error is the sum of the changes by twice the step, by a coarser grid, and by an earlier
+        window of time.
 
     Raises
     ------

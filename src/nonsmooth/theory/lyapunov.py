@@ -1,4 +1,4 @@
-"""The paper's Lyapunov functions V_n and their drift A_n V_n + epsilon V_n (Lemma 2).
+"""The paper's Lyapunov functions V_n and their drift A_n V_n + epsilon V_n (Lemma 2 of the paper).
 
 Everything is derived for the undefined functions of `scenes.equations`, so that the terms
 delta y U'(x) of opposite sign cancel in algebra and not in floating point. Then the values of a
@@ -124,7 +124,7 @@ def constants(scene: Scene) -> Constants:
     if trap:
         bounds.append(1 / math.sqrt(trap.lambda_1))
     big = tuning.LYAPUNOV.slack * max(bounds)
-    # the constant of (25) has C_V in the place of epsilon C_V, which needs epsilon <= 1
+    # the constant of eq. (25) has C_V where epsilon C_V is meant, which needs epsilon <= 1
     limits = [b, 1.0] + ([trap.lambda_3 / big] if trap else [])
     restoring, form = math.inf, None
     if scene.noise.kind == "langevin":

@@ -14,9 +14,9 @@ class Assumptions:
     farthest: float = 1e6  # chosen: last point of it; stands for infinity
     logarithmic: int = 1201  # chosen: points in equal ratios, a hundred for each factor of ten
     equidistant: tuple[float, int] = (20.0, 801)  # chosen: end and number of points where U varies
-    positive: float = 1e-3  # chosen: the assumptions want beta > 0, and any larger value is one too
+    positive: float = 1e-3  # chosen: added to each beta, which must be positive; larger ones serve
     safety: float = 1e-9  # chosen: relative, far above the error of the refined suprema
-    quadratic: float = 1e-6  # chosen: U / x^2 that counts as none at infinity
+    quadratic: float = 1e-6  # chosen: a limit of U / x^2 up to this counts as 0
     inside: int = 2001  # chosen: points of [-1, 1] on which the steepest slope of U is found
     inside_safety: float = 1e-3  # chosen: relative, above what is missed between them
 
@@ -25,7 +25,7 @@ class Assumptions:
 class Lyapunov:
     """How far the constants of V_n are from their bounds."""
 
-    slack: float = 1.01  # chosen: the inequalities (14) are strict
+    slack: float = 1.01  # chosen: factor above the bounds, as the inequalities (14) are strict
 
 
 @dataclass(frozen=True)
@@ -44,18 +44,18 @@ class Ergodicity:
     coarse: int = 1  # chosen: level of the grid that shows the error
     fine: int = 2  # chosen: level of the grid
     settled: float = 1e-3  # chosen: the rate is taken from where the norm has fallen so far
-    floor: float = 1e-10  # chosen: to there; above rounding, which is relative to the first norm
-    # derived: eigenvalues that coincide, or nearly, make the norm t^k exp(-rate t). The slope in
-    # the middle of an interval is then k/t too small: in its second half, 3.7 times as much as it
-    # has changed since all of it. Half as much again allows for complex pairs.
+    floor: float = 1e-10  # chosen: to where it has fallen so far; rounding is below that
+    # derived: if eigenvalues coincide, or nearly, the norm is t^k exp(-rate t), and its slope at t
+    # is k/t too small. In the second half of the window this error is 3.7 times the difference to
+    # the slope in the whole window. Half as much again allows for complex pairs.
     unsettled: float = 5.6
     longest: int = 20_000  # chosen: steps; bounds the time
-    trusted: float = 0.75  # chosen: of a box, in whose corners the solution sees where it ends
-    points: int = 60  # chosen: on each side of 0, of the search for the largest ratio
-    nearest: float = 1e-4  # chosen: the first of them
-    rounds: int = 6  # chosen: closer looks at the largest ratio
-    near: int = 13  # chosen: points of each variable in a closer look
-    rounding: float = 1e-11  # fitted: linear scenes have up to 2e-12, relative
+    trusted: float = 0.75  # chosen: part of a box that is used; its corners distort the solution
+    points: int = 60  # chosen: points on each side of 0 in the search for the largest ratio
+    nearest: float = 1e-4  # chosen: the smallest positive one of them
+    rounds: int = 6  # chosen: number of closer searches around the largest ratio
+    near: int = 13  # chosen: points of each variable in a closer search
+    rounding: float = 1e-11  # fitted: relative rounding error; linear scenes show up to 2e-12
 
 
 ASSUMPTIONS = Assumptions()

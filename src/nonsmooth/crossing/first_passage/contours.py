@@ -130,7 +130,7 @@ def inverted(
         F.
     contour : Contour
     times : numpy.ndarray, shape (t,)
-        Increasing. Terms are looked at for the first one, at which they are largest.
+        Increasing. Terms are examined at the first one, where they fall most slowly.
     negligible : float
         Relative to the first term.
 

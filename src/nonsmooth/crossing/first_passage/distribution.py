@@ -64,7 +64,7 @@ def deterministic_crossing(
         )
     try:
         return solve(scene, lower, upper, times, default_tolerance(scene) if tol is None else tol)
-    except (np.linalg.LinAlgError, RuntimeError) as error:  # of dense and of sparse matrices
+    except (np.linalg.LinAlgError, RuntimeError) as error:  # from dense and from sparse matrices
         raise ToleranceError(
             f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
             "use method='monte_carlo'"
@@ -72,7 +72,7 @@ def deterministic_crossing(
 
 
 def default_tolerance(scene: Scene) -> float | None:
-    """Return the absolute error of `deterministic_crossing` unless told; None if it cannot."""
+    """Return the tolerance of `deterministic_crossing` unless given; None if it does not apply."""
     if scene.is_line:
         return tuning.LINE.default_tolerance
     return tuning.PLANE.default_tolerance if plane.applies(scene) else None
@@ -98,7 +98,7 @@ def _in_plane(scene, lower, upper, times, tol):
 
 
 def _from_afar(scene, lower, upper, times, tol):
-    """Solve for a start in the tails: by a normal law at first, later by `LineProblemFromAfar`."""
+    """Solve for a start in the tails: early times by a normal law, later ones by a problem."""
     tail, neglected = tail_descent.tail(scene), tuning.FAR_START.neglected
     distance = upper if tail.towards > 0 else -lower
     passed = np.array([tail.law(t).passed(distance) for t in np.minimum(times, tail.flight)])
@@ -166,7 +166,7 @@ def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict
 
 
 def _solver(problem: FirstPassageProblem, times: np.ndarray) -> Solver:
-    """How a problem of either kind is solved on a level; see `inversion.contour_solver`."""
+    """Return the function that solves a problem on a level; see `inversion.contour_solver`."""
     if isinstance(problem, LaplaceProblem):
         return contour_solver(problem, times)
     assert isinstance(problem, DirectProblem)
@@ -175,7 +175,7 @@ def _solver(problem: FirstPassageProblem, times: np.ndarray) -> Solver:
 
 
 class _Refinement:
-    """Solutions on finer and finer levels, each anew only at times where it must be better.
+    """Solutions on finer and finer levels, computed anew only at times that need it.
 
     A solution is a pair: the values, shape (2, k), and at which times they are new.
     """
@@ -204,7 +204,7 @@ class _Refinement:
         )
         (coarse, _), (found, solved) = solutions[-2:]
         solution = np.clip(found, 0.0, 1.0)
-        # the values are compared as they are: if both levels failed, they would agree on 0 or 1
+        # values are compared before they are clipped: two levels that failed may agree afterwards
         change = safety * np.abs(found - coarse) + np.abs(found - solution)
         self._change = np.where(solved, change, self._change)
         error = _largest_nearby(
@@ -224,7 +224,10 @@ class _Refinement:
         return np.all(error <= self.tol)
 
     def hopeless(self, solution, error):
-        """Whether it does not fall any more, for then it is rounding; else where to go on."""
+        """Whether the error no longer falls, because it is rounding.
+
+        If it does fall, the times are noted at which a finer level is wanted.
+        """
         if not error.max() < self._worst:
             return True
         self._worst = error.max()
@@ -233,9 +236,9 @@ class _Refinement:
 
 
 def _largest_nearby(errors, values, times):
-    """Largest error among neighbouring times, for the difference of two levels may vanish.
+    """Take the largest error among neighbouring times, since two levels may agree by chance.
 
-    The error at a time of a larger value counts in proportion to the values.
+    If the value at a neighbouring time is larger, its error is reduced in proportion.
     """
     refinement = tuning.REFINEMENT
     near = np.abs(np.log(times[:, None] / times)) <= np.log(refinement.nearby)

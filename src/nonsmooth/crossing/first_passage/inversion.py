@@ -3,12 +3,13 @@
 The times are divided into windows, each served by one contour on which F(z) = E exp(-z tau) is
 evaluated. With increasing time there are up to four stages:
 
-- Crossings are so rare that Chernoff's bound of their probability is negligible: it is 0.
-- The rise: the contour goes through the saddle point of exp(z t) F(z) / z, which keeps the relative
-  error of small probabilities small.
-- Later, a hyperbola around the poles of F on the negative axis, and the pole of 1/z.
-- The end: the survival probability is small. It is computed from (1 - F(z)) / z, and the hyperbola
-  crosses the axis at the leading pole instead of 0, which keeps its relative error small.
+- At first crossings are so rare that Chernoff's bound of their probability is negligible. The
+  probability is set to 0.
+- In the rise the contour goes through the saddle point of exp(z t) F(z) / z, which keeps the
+  relative error of small probabilities small.
+- Later the contour is a hyperbola around the poles of F on the negative axis and the pole of 1/z.
+- In the end the survival probability is small. It is computed from (1 - F(z)) / z, and the
+  hyperbola crosses the axis at the leading pole instead of 0, which keeps its relative error small.
 """
 
 from collections.abc import Callable
@@ -119,7 +120,8 @@ class _Inversion:
         ]
         negligible = begin
         for here, integrand in reversed(rise):
-            last = here.stop - 1  # at whose saddle the integrand is small at earlier times, too
+            # at the saddle point of the last time the integrand is small at earlier times, too
+            last = here.stop - 1
             contour = contours.through_saddle(
                 saddles.place[last], saddles.width[last], self.level.spacing, saddles.tilt[last]
             )
@@ -127,8 +129,8 @@ class _Inversion:
                 here,
                 contours.inverted(integrand, contour, self.times[here], settings.rise_truncation),
             )
-            # The probability increases with time: if it is negligible here although the bound is
-            # not, it is so at all earlier times.
+            # The probability increases with time. If it is negligible here, although its bound is
+            # not, then it is negligible at all earlier times, too.
             least = tuning.INVERSION.surely * settings.least_probability
             if settings.relative and abs(self.found[0, here.start]) < least:
                 negligible = here.start
@@ -136,7 +138,7 @@ class _Inversion:
         self._store(slice(negligible), np.zeros(negligible))
 
     def _later(self, windows):
-        """Solve windows on hyperbolas, of given kinds."""
+        """Solve windows, each on a hyperbola of the kind given with it."""
         for here, kind in windows:
             if self.wanted[here].any():
                 integrand = _of_probability(self._transform(here))
@@ -179,7 +181,7 @@ def _windows(first, end, *growing):
 
 
 def _hyperbolic(times, saddles, begin, end):
-    """Windows that hyperbolas serve, before `end`, with the kind of hyperbola."""
+    """Yield the windows before `end` that hyperbolas serve, each with the kind of hyperbola."""
     first, steady = (
         np.max(np.flatnonzero(~fits) + 1, initial=begin) for fits in (saddles.early, saddles.steady)
     )
@@ -191,7 +193,7 @@ def _hyperbolic(times, saddles, begin, end):
 
 
 def _leading_pole(transform, time):
-    """Rightmost pole of F; at `time`, the survival probability has just become small."""
+    """Find the rightmost pole of F. At `time` the survival probability has just become small."""
 
     def inverse(z):
         return (1 / transform(z)).real

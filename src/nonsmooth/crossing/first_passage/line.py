@@ -49,9 +49,10 @@ class LineProblem(LaplaceProblem):
         return lambda z: first_passage(grid, z, self.lower, self.upper)
 
     def _reach(self, time, depth):
-        """Change of velocity within a time that is exceeded with probability 4 exp(-depth - 18).
+        """Return a change of velocity that is unlikely to be exceeded within a time.
 
-        At most: this is so for Brownian motion without the drift, which points to the origin.
+        Brownian motion exceeds it with a probability of at most 4 exp(-depth - 18). The drift,
+        which points to the origin, makes that rarer still.
         """
         spare = tuning.LINE_GRIDS.spare
         return self.scene.noise.sigma * np.sqrt(2 * time * (depth + spare))

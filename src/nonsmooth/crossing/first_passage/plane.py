@@ -81,7 +81,8 @@ class PlaneProblem(LaplaceProblem):
         return max(mean, tuning.SLABS.least * time)
 
     def _on_grid(self, resolution, time):
-        if resolution not in self._grids:  # the shortest time is asked for first
+        # the window of the shortest times is asked for first; its grid serves the others, too
+        if resolution not in self._grids:
             self._grids[resolution] = self.discretised(resolution, time)
         grid = self._grids[resolution]
         return lambda z: first_passage(grid, z, self.lower, self.upper, resolution)

@@ -82,8 +82,8 @@ class ContourSettings(Settings):
     window : float
         Last time over first time that a contour through a saddle point serves.
     rise_truncation, steady_truncation : float
-        A contour ends where a term is so small relative to the first: on a contour through a
-        saddle point, where the probability is still small; and on a hyperbola.
+        Size of a term, relative to the first, at which a contour ends: for contours through a
+        saddle point, which serve while the probability is still small, and for hyperbolas.
     """
 
     least_transform: float

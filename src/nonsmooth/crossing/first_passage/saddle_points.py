@@ -1,4 +1,4 @@
-"""Where the contours of the inverse Laplace transform may go.
+"""The saddle points of the inverse Laplace transform, and how far contours may bend.
 
 For a probability, the integrand is exp(z t) F(z) / z with F(z) = E exp(-z tau). On the positive
 axis it has a minimum, the saddle point: a contour through it has no larger values than the result,
@@ -57,7 +57,9 @@ def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
     SaddlePoints
     """
     log_z, log_F, growth = _samples(problem, times)
-    if len(log_F) < 2:  # log F falls by a factor exp(spacing) a step at most: nothing crosses
+    # -log F grows at most by the factor exp(spacing) from one sample to the next. If the second one
+    # is rounding already, F is tiny at all z: nothing crosses.
+    if len(log_F) < 2:
         nothing = np.zeros(len(times))
         bound, fits = nothing + np.log(problem.settings.least_transform), nothing == 0
         return SaddlePoints(nothing, nothing, bound, nothing, fits, fits)
@@ -74,14 +76,14 @@ def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
 
 
 def _samples(problem, times):
-    """Log z, log F there, and log |F| at the same distance on the rays, while F is not rounding."""
+    """Sample log F on the axis and log |F| on the rays, at the same |z|, until F is rounding."""
     settings = tuning.SADDLE_POINTS
     first, last = np.log([settings.first / times[-1], settings.largest / times[0]])
     log_z = np.arange(first, last + settings.spacing, settings.spacing)
     log_F: list[float] = []
     growth = []
     for z in np.exp(log_z):
-        # the saddle of the time t is where z t = d log F / d log z, which is less than log F
+        # z is the saddle point of the time t = -(d log F / d log z) / z, and z t is at most -log F
         depth = max(1.0, -(1 + settings.spacing) * log_F[-1]) if log_F else 1.0
         transform = problem.coarse_transform(z, depth)
         value = transform(z).real
@@ -138,7 +140,7 @@ class _Axis:
         bound = np.min(self.z * t + self.log_F)
         best = np.argmin(self.z * t + self.log_F - self.log_z)
         place = self.z[best]
-        # the second derivative in z of the exponent, log z among it
+        # second derivative of the exponent z t + log F - log z in log z
         bend = max(self.bend[best] - self.slope[best] + 1, settings.least_bend)
         # the arms of a contour take the angle of a ray; F must also grow little on the rays between
         # it and the axis, for otherwise there are poles
@@ -164,9 +166,9 @@ class _Axis:
         return risen and self._grows_little(everywhere, settings.tame, t, settings.far / t)
 
     def _grows_little(self, rays, share, t, least):
-        """Whether log |F| is at most a share of the fall of exp(z t), on the first rays.
+        """Whether on the first rays log |F| is at most a share of the fall of exp(z t).
 
-        Looked at are radii above the least one, as far as exp(z t) matters.
+        Only radii above the least one are examined, as far out as exp(z t) is not negligible.
         """
         settings = tuning.SADDLE_POINTS
         fall = self.radii[:, None] * t * np.sin(settings.angles[:rays])

@@ -33,7 +33,9 @@ class UnstableError(Exception):
 
 
 def applies(problem: PlaneProblem, times: np.ndarray) -> bool:
-    """Whether all has crossed, or the last time is reached, within some hundred relaxation times.
+    """Whether there are few enough steps: within some hundred relaxation times all is over.
+
+    Then practically all paths have crossed, or the last time is reached.
 
     Parameters
     ----------
@@ -152,7 +154,7 @@ class _Interval:
 
 
 def _towards(wall, finest, reach, other):
-    """Edges from 0, left out, to a threshold, or as far as paths return from if there is none."""
+    """Edges beyond 0 up to a threshold, or up to where paths hardly get if there is none."""
     ratio = tuning.TIME_STEPPING.ratio
     if math.isfinite(wall):
         return np.append(wall - graded(wall, finest, ratio)[1:], wall)

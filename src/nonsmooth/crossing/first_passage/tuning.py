@@ -9,14 +9,15 @@ from nonsmooth.crossing.first_passage.problem import ContourLevel, ContourSettin
 class Contours:
     """Hyperbolic contours of the inverse Laplace transform."""
 
-    spare: int = 3  # chosen: times the nodes that a bounded transform needs
+    spare: int = 3  # chosen: nodes that are prepared, over those that a bounded transform needs
     farthest: float = 7.0  # derived: parameter of the last node, exp(7)/2 saddles away from 0
     of_width: float = 0.85  # derived: spacing, in standard deviations, that gives a normal
     #                         integrand ten digits
     of_saddle: float = 0.25  # chosen: spacing near the pole at 0, over the distance of the saddle
-    steep: tuple[float, float] = (0.45, 0.7)  # chosen: steep arms leave less room in which the
-    #                         transform does not grow: spacing times 0.45 + tilt / 0.7, at most 1
-    truncation_most: int = 100  # chosen: terms of a contour, after which it is given up
+    # chosen: near steep arms the transform soon grows, so the spacing is multiplied by 0.45 +
+    # tilt / 0.7 if that is below 1
+    steep: tuple[float, float] = (0.45, 0.7)
+    truncation_most: int = 100  # chosen: largest number of terms on a contour; the rest is dropped
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,9 @@ class SaddlePoints:
     tame: float = 0.08  # chosen: growth over fall, at most, on a hyperbola
     harmless: float = 0.7  # chosen: growth that does not matter; poles near the axis cause it
     negligibly: float = 30.0  # derived: where exp(z t) < exp(-30) growth does not matter
-    far: float = 6.0  # chosen: on a hyperbola growth is looked at for |z| t above it only, for
-    #                   the poles nearer to 0 are inside the contour
+    # chosen: for a hyperbola growth matters only where |z| t is larger; poles nearer to 0 are
+    # inside the contour
+    far: float = 6.0
     risen: float = 0.05  # chosen: bound of the probability from which on hyperbolas serve
     spacing: float = 0.6  # chosen: of log z on the axis, for a spline of log F
     fine: float = 0.01  # chosen: of log z on the spline
@@ -54,9 +56,9 @@ class Hyperbola:
     ratio : float
         Last time over first time, at most.
     more : int
-        Nodes more than those of a level.
+        Number of nodes in addition to those of a level.
     since : float
-        Earliest time over that at which hyperbolas serve at all.
+        Earliest time at which this kind serves, over the earliest at which any hyperbola does.
     """
 
     sector: float
@@ -69,30 +71,35 @@ class Hyperbola:
 class Inversion:
     """Windows of times, each of which is served by one contour."""
 
-    per_decade: float = 8.0  # chosen: nodes more for each decade of times
-    shortest: float = 3.0  # chosen: last over first time that a hyperbola is made for, at least
-    growth: float = 1e4  # chosen: growth of the probability in a window, at most, in the rise
-    # chosen: soon after the rise poles off the axis count, whose parts decay in three times that
+    per_decade: float = 8.0  # chosen: additional nodes for each decade of times
+    shortest: float = 3.0  # chosen: least ratio of last to first time for which a hyperbola is made
+    growth: float = 1e4  # chosen: largest growth of the probability's bound in a window of the rise
+    # chosen: soon after the rise, poles off the axis contribute; at three times that time their
+    # contribution has decayed
     early: Hyperbola = Hyperbola(sector=0.9, ratio=4.0, more=10, since=1.0)
     steady: Hyperbola = Hyperbola(sector=0.3, ratio=20.0, more=3, since=3.0)
-    surely: float = 0.1  # derived: part of the least probability of which two levels and their
-    #                      difference stay below it
-    small: float = 1e-3  # chosen: survival probabilities below get contours of their own
+    # chosen: a probability below this part of the least one is negligible, whatever its error: two
+    # levels and their difference all stay below the least one
+    surely: float = 0.1
+    small: float = 1e-3  # chosen: smaller survival probabilities get contours of their own
 
 
 @dataclass(frozen=True)
 class Refinement:
     """The error, from the differences of levels."""
 
-    # fitted: rounding of a survival probability per relaxation time, by the formula of order 2,
-    # for slow crossings; without symmetry the slow mode is not split off, see `case_modes`
+    # fitted: rounding error of a survival probability for each relaxation time, found by comparison
+    # with the corrected formula of order 2 for slow crossings. It is larger without symmetry, where
+    # `case_modes` does not treat the slow mode apart.
     rounding: float = 1e-13
     rounding_odd: float = 1e-14
-    safety: float = 3.0  # fitted: benchmarks/crossing_honesty.py, levels converge irregularly
-    safety_odd: float = 1.0  # fitted: the same
+    # fitted: benchmarks/crossing_honesty.py; factor on the difference of two levels, above 1 where
+    # levels converge irregularly
+    safety: float = 3.0
+    safety_odd: float = 1.0  # fitted: the same, for odd g and drift
     nearby: float = 2.0  # chosen: times within this factor share their errors
     underflow: float = 1e-300  # derived: about the smallest normal number
-    exact: float = 1e-12  # chosen: errors below are not mended by the complementary probability
+    exact: float = 1e-12  # chosen: smaller errors are kept, not replaced by the complement's error
     complement: float = 1e-15  # derived: rounding of 1 minus a probability
 
 
@@ -102,7 +109,7 @@ class LineGrids:
 
     coarse: int = 6  # chosen: polynomial degree for the choice of contours
     spare: float = 18.0  # chosen: what is neglected is exp(-18) of the probability
-    depth: float = 26.0  # chosen: the grid ends where the density has fallen by exp(-26), too
+    depth: float = 26.0  # chosen: the grid ends where the density is exp(-26) of the probability
 
 
 @dataclass(frozen=True)
@@ -119,7 +126,7 @@ class Slabs:
 
     fewest: int = 7  # chosen: doublings at resolution 0
     thin: float = 0.1  # chosen: thinnest slab at resolution 0, over the way of a relaxation time
-    least: float = 1e-6  # chosen: mean duration over the time, below which it does not matter
+    least: float = 1e-6  # chosen: least mean duration, over the time; keeps it above rounding
 
 
 @dataclass(frozen=True)
@@ -159,9 +166,10 @@ class TimeStepping:
     gone: float = 1e-6  # chosen: survival that is taken as 0, below the error
     short: float = 500.0  # chosen: relaxation times; slabs are faster for more
     tail: float = 15.0  # chosen: mean durations after which nothing is left
-    most: int = 20_000  # chosen: steps, after which it is given up
-    unstable: float = 1e-3  # chosen: values so far outside of [0, 1] grow; less is an overshoot of
-    #                         the elements where a front passes
+    most: int = 20_000  # chosen: steps, after which this gives up with an error
+    # chosen: values so far outside of [0, 1] mean that the solution grows; elements overshoot by
+    # less where a front passes
+    unstable: float = 1e-3
 
 
 CONTOURS = Contours()
@@ -173,10 +181,12 @@ FAR_START = FarStart()
 SLABS = Slabs()
 TIME_STEPPING = TimeStepping()
 
+# The numbers of these records are described at `Settings` and `ContourSettings`. All without a
+# comment are chosen by trial; benchmarks/crossing_honesty.py checks the errors that result.
 LINE = ContourSettings(
     default_tolerance=1e-7,
     coarse_tolerance=1e-4,
-    # chosen: more nodes, of larger real part, would only make rounding errors grow
+    # chosen: with more nodes their real parts are larger, which only makes rounding errors grow
     levels=(
         ContourLevel(4, 7, 1.2),
         ContourLevel(6, 10, 0.9),
@@ -187,8 +197,8 @@ LINE = ContourSettings(
     ),
     relative=True,
     least_probability=1e-14,
-    # fitted: benchmarks/crossing_honesty.py; if g is odd, modes come in squares, of which fast ones
-    # lose half of their digits
+    # fitted: benchmarks/crossing_honesty.py; if g is odd, decay lengths are computed as square
+    # roots, which costs the short ones half of their digits
     unseen_error=2e-9,
     advice="loosen tol",
     least_transform=1e-70,
@@ -199,7 +209,7 @@ LINE = ContourSettings(
 LINE_FROM_AFAR = replace(
     LINE,
     relative=False,
-    # chosen: from a far start the probability rises fast up to 1
+    # chosen: from a far start the probability rises fast, up to 1, which takes more nodes
     levels=tuple(level._replace(spacing=0.65 * level.spacing) for level in LINE.levels),
     rise_truncation=1e-9,
     advice="loosen tol, or use method='monte_carlo'",
@@ -233,7 +243,7 @@ PLANE_IN_TIME = Settings(
     ),
     relative=False,
     least_probability=PLANE.least_probability,
-    unseen_error=2e-5,  # chosen: as of `PLANE`, and what levels that refine one variable leave of
-    #                     the other
+    # chosen: that of `PLANE`, and as much again because levels refine mostly one of the variables
+    unseen_error=2e-5,
     advice=PLANE.advice,
 )
