@@ -5,7 +5,7 @@ is self-adjoint in the space of square-integrable functions weighted by the inva
 Everything that the library asks of such a scene is an integral over m or follows from the
 eigenfunctions of A, to nearly full precision. The manual page is `docs/methods/line.md`.
 
-- `potential.potential`, `potential.depth`: -log m, up to a constant.
+- `potential.potential`, `potential.depth`: Phi = -log m, up to a constant.
 - `quadrature.asymptotic_variance`, `quadrature.mean`, `quadrature.density`,
   `quadrature.poisson_slope`: gamma^2, E g, m, and the derivative of the Poisson solution.
 - `eigenfunctions.spectrum`, `eigenfunctions.moments`: eigenpairs of -A; mean and variance of

@@ -9,11 +9,11 @@ from nonsmooth.line import tuning
 
 
 def friction_variance(n: float, damping: float = 1.0) -> tuple[float, float]:
-    """Return gamma_n^2, the limit of Var(int_0^t Y_s ds) / t (Theorem thm3), with its error.
+    """Return gamma_n^2, the limit of Var(int_0^t Y_s ds) / t, and its error.
 
-    With m(y) = exp(-C_b y^2 - 2 a_n(y)) the Poisson equation reads (m u')' = -2 y m, so that
-    u' = 2/m int_y^inf s m(s) ds is elementary up to one scaled complementary error function,
-    and gamma^2 = int u'^2 m / int m.
+    This is Theorem 6 of the paper for g(y) = y. With m(y) = exp(-C_b y^2 - 2 a_n(y)) the Poisson
+    equation reads (m u')' = -2 y m, so that u' = 2/m int_y^inf s m(s) ds is elementary up to one
+    scaled complementary error function, and gamma^2 = int u'^2 m / int m.
 
     Parameters
     ----------

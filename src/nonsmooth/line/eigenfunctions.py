@@ -94,8 +94,8 @@ def rounding(scene: Scene, degree: int) -> float:
     """Bound the relative rounding error of all results.
 
     Entries of the stiffness matrix are of the size degree^2 / width and cancel when it is applied
-    to smooth functions; the unit of y is C_b^(-1/2), over which these change. The factor in front
-    was fitted, see `tuning`.
+    to smooth functions. Widths are in units of C_b^(-1/2), over which these functions change. The
+    factor in front was fitted, see `tuning.SPECTRAL_ELEMENTS`.
     """
     width = np.min(np.diff(mesh(scene))) * np.sqrt(scene.damping)
     factor = tuning.SPECTRAL_ELEMENTS.rounding
@@ -109,14 +109,14 @@ def asymptotic_variance(scene: Scene, degree: int) -> float:
 
 
 def moments(scene: Scene, times: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """w(start, tau) of the centred observable and v(start, tau) (eqs. PDEw, defvgyt).
+    """w(start, tau) of the centred observable and v(start, tau), eqs. (35), (36) of the paper.
 
     w is the mean of int_0^tau g and v its variance,
 
         v = 2 sum_jk g_k <g phi_k, phi_j> phi_j(start) I_jk - w^2,
 
-    with the integrals I_jk = int_0^tau exp(-lambda_j s) (1 - exp(-lambda_k (tau - s))) / lambda_k
-    ds in a form in which nothing cancels.
+    where I_jk = int_0^tau exp(-lambda_j s) (1 - exp(-lambda_k (tau - s))) / lambda_k ds. These
+    integrals are evaluated in a form in which nothing cancels.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
-"""The paper's finite-difference scheme (its appendix C), with the indices mended.
+"""The paper's finite-difference scheme (its appendix C), with the time indices corrected.
 
 It is backward Euler in time and has centred differences in space on [-L, L], with one-sided
-Neumann rows at the ends. The right-hand sides take W^{k-1} and V^{k-1}, where step k is printed,
-and the source of V is (D W^k)^2. The scheme is of first order in time and, on a grid with nodes on
-the kinks at +-1/n, of second order in space.
+Neumann rows at the ends. The right-hand sides take W^{k-1} and V^{k-1}, where the paper prints the
+index k; the source of V is (D W^k)^2. The scheme is of first order in time and, on a grid with
+nodes on the kinks at +-1/n, of second order in space.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ from nonsmooth.scenes.scene import Scene
 def moments(
     scene: Scene, times: ArrayLike, half_width: float, nodes: int, time_step: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solve eqs. (PDEw) and (PDEv) and return w and v at the starting point.
+    """Solve eqs. (35) and (37) of the paper and return w and v at the starting point.
 
     Parameters
     ----------

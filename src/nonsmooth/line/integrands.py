@@ -1,4 +1,4 @@
-"""What is integrated for a scene: Phi and g as functions of y, and the elements they ask for."""
+"""What is integrated for a scene: Phi and g as functions of y, and elements to begin with."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -64,7 +64,8 @@ class Integrands:
         SceneError
             If it is not finite.
         """
-        with np.errstate(all="ignore"):  # of the branches that are not taken
+        # all branches of a formula are evaluated everywhere, also where they are not taken
+        with np.errstate(all="ignore"):
             value = vectorised(self.varying, (symbols.y,))(y)
         if not np.all(np.isfinite(value)):
             place = np.asarray(y)[~np.isfinite(value)][0]
@@ -98,13 +99,15 @@ class Integrands:
 
     def _edges(self):
         settings = tuning.QUADRATURE
-        # the depth of the damping alone ends here, that of friction nearer
+        # with damping alone Phi reaches that depth here; with friction it does so nearer to 0
         end = self.scene.noise.sigma * np.sqrt(settings.depth / self.scene.damping)
         if self.depth(end) > settings.depth:
             end = brentq(lambda y: self.depth(y) - settings.depth, 0.0, end)
         edges = _within([-end, -self.knot, 0.0, self.knot, end], end)
         functions = [vectorised(f, (symbols.y,)) for f in switches(self.varying)]
-        while True:  # kinks may be so close together that only shorter elements tell them apart
+        # Kinks may be so close together that only the points of shorter elements tell them apart:
+        # look for them again until no more are found.
+        while True:
             while np.any(steep := np.abs(np.diff(self.depth(edges))) > settings.steepest):
                 edges = np.sort(np.append(edges, (edges[:-1] + edges[1:])[steep] / 2))
             grown = _within(

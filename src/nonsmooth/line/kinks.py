@@ -57,9 +57,9 @@ def sign_changes(function: Callable, edges: np.ndarray) -> np.ndarray:
 
 
 def isolated_zeros(g: Callable, places: ArrayLike, end: float) -> np.ndarray:
-    """Return those of the places at which g vanishes, but not on both sides of it.
+    """Return those of the places at which g vanishes, unless it vanishes on both sides, too.
 
-    So a place inside an interval on which g = 0 is left out; the ends of the interval remain.
+    So places inside an interval on which g = 0 are left out; the ends of the interval remain.
 
     Parameters
     ----------
@@ -72,6 +72,7 @@ def isolated_zeros(g: Callable, places: ArrayLike, end: float) -> np.ndarray:
     """
     places = np.unique(places)
     beside = np.abs(g(places[:, None] + np.array([-1e-9, 1e-9]) * end))
-    # a zero that was bisected is not exact; next to it g is small, next to a pole or a kink not
+    # A zero found by bisection is not exact, but g is not larger there than beside it. At a pole,
+    # where g changes its sign too, it is.
     vanishes = np.abs(g(places)) <= np.max(beside, axis=1)
     return places[vanishes & np.any(beside > 0, axis=1)]

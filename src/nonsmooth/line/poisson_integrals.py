@@ -5,9 +5,9 @@ Hence
 
     u'(y) = 2 / (sigma^2 m(y)) int_y^inf (g - E g) m,    gamma^2 = sigma^2 int u'^2 m
 
-(Theorem thm3). The inner integral is taken from the end of the axis on the side of y, where the
-summands are smallest, so that nothing cancels. Besides the integrals there are estimates of what
-is wrong with them: the polynomials' misfit on each element, and rounding.
+(Theorem 6 of the paper). The inner integral is taken from the end of the axis on the side of y,
+where the summands are smallest, so that nothing cancels. Two errors are estimated besides: what the
+polynomials on the elements miss, and rounding.
 """
 
 from dataclasses import dataclass
@@ -35,6 +35,7 @@ class PoissonIntegrals:
     mean : float
         E g, without the additive constant of g.
     gamma2 : float
+        gamma^2.
     flux : numpy.ndarray, shape (k,)
         int_y^inf (g - E g) exp(-Phi) at the outer edge of each element.
     influence : numpy.ndarray, shape (k, POINTS)
@@ -46,7 +47,7 @@ class PoissonIntegrals:
     tail : float
         What the two outermost elements contribute to gamma^2.
     rounding : float
-        Rounding error of gamma^2, but for that of the formula of g.
+        Rounding error of gamma^2, without that of the formula of g.
     """
 
     elements: GaussElements
@@ -78,7 +79,7 @@ def integrate(e: GaussElements, sigma: float) -> PoissonIntegrals:
     mass, side = e.mass, np.where(e.left < 0, -1.0, 1.0)
     total = mass.sum()
     mean = np.sum(mass * e.g) / total
-    mean += np.sum(mass * (e.g - mean)) / total  # what rounding of a large mean has left
+    mean += np.sum(mass * (e.g - mean)) / total  # removes the rounding error of a large mean
     centred = e.g - mean
     source = e.half * np.exp(-e.depth) * centred
     flux, flux_outside = e.from_ends(source)
@@ -111,7 +112,10 @@ def integrate(e: GaussElements, sigma: float) -> PoissonIntegrals:
 
 
 def _flux_rounding(e, source, spread):
-    """Estimate the rounding error of the flux: in the element, of partial sums, of the mean."""
+    """Estimate the rounding error of the flux, in units of eps.
+
+    Its parts are those of the sum in the element, of the sum over the elements, and of the mean.
+    """
     moduli, partial = e.from_ends(np.abs(source))
     beyond, _ = e.from_ends(e.half * np.exp(-e.depth))
     zero = e.first_right
@@ -122,17 +126,17 @@ def _flux_rounding(e, source, spread):
 
 
 def exponential_rounding(depth: np.ndarray) -> np.ndarray:
-    """Relative error of exp(-depth): depth is rounded, and so is the point, four times in all."""
+    """Relative error of exp(-depth): four roundings, of depth and of the point it belongs to."""
     return _EPS * (4 + 4 * depth)
 
 
 def formula_error(varying: sympy.Expr, solution: PoissonIntegrals) -> np.ndarray:
     """Bound the rounding error of g at the Gauss points.
 
-    It has three parts: g is rounded; the point is, which the slope of g magnifies; and the formula
-    of g may cancel. The last part is measured against an evaluation to many digits on the elements
-    that matter most, at three points of each, and the largest of the three is taken for the
-    element.
+    It has three parts. The value of g is rounded. The point is rounded, too, which matters where g
+    is steep. And terms of the formula of g may cancel. The last part
+    is measured against an evaluation to many digits, on the elements that matter most, at three
+    points of each; the largest of the three is taken for the element.
 
     Parameters
     ----------

@@ -27,7 +27,8 @@ def potential(scene: Scene) -> tuple[sympy.Expr, float]:
     potential : sympy.Expr
         In y.
     knot : float
-        Phi is smooth but for the points -knot and knot; 0 where it is smooth or at n = inf.
+        Phi has kinks at -knot and knot and is smooth elsewhere. 0 if it has no kink, and at
+        n = inf, where the kink is at 0.
 
     Raises
     ------

@@ -50,7 +50,7 @@ class Solution:
 
 
 def asymptotic_variance(scene: Scene, tol: float = 1e-10) -> tuple[float, float]:
-    """Return gamma_g^2, the limit of Var(int_0^t g) / t (Theorem thm3).
+    """Return gamma_g^2, the limit of Var(int_0^t g) / t (Theorem 6 of the paper).
 
     Parameters
     ----------
@@ -62,11 +62,11 @@ def asymptotic_variance(scene: Scene, tol: float = 1e-10) -> tuple[float, float]
     Returns
     -------
     value, error : float
-        The error is the difference of two solutions, the second on elements half as wide, and
-        the rounding error to first order: of the exponentials, of the formula of g, measured
-        against an evaluation to 40 digits, and of the sums. Neither solution sees a feature of
-        g that is narrower than the distance of its points, unless it is at a sign change of the
-        argument of an absolute value, maximum, logarithm, ... of the formula.
+        The error is the difference of two solutions, the second on elements half as wide, plus
+        the rounding error to first order. That of the formula of g is measured against an
+        evaluation to 40 digits; those of the exponentials and of the sums are estimated. Neither
+        solution sees a feature of g that is narrower than the distance of its points, unless it
+        lies where the argument of an absolute value, maximum, logarithm, ... changes its sign.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def solved(scene: Scene) -> Solution:
 
 
 def _resolved(integrands, sigma):
-    """Halve elements until none matters, or until only rounding of g is left to resolve.
+    """Halve elements until none adds to the error, or what is left is rounding of g.
 
     Returns the last integrals, which of their elements are not resolved, and the last elements.
     """
@@ -219,7 +219,7 @@ def _resolved(integrands, sigma):
     for _ in range(settings.rounds):
         found = integrate(elements, sigma)
         rough = found.misfit > settings.resolved * found.gamma2
-        # halving does not help against the rounding of g
+        # where rounding of g is all that is left, halving does not help
         size = np.sum(elements.mass * np.abs(elements.g), 1)
         hopeful = rough & (found.missed > settings.noise * _EPS * size)
         if not hopeful.any() or len(hopeful) > settings.most_elements:

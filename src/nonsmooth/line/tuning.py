@@ -1,4 +1,7 @@
-"""Numbers that were chosen for scenes with one state variable, a record for each method."""
+"""Numbers that were chosen for scenes with one state variable, a record for each method.
+
+Each line says what the number is and where it comes from.
+"""
 
 from dataclasses import dataclass
 
@@ -7,10 +10,10 @@ from dataclasses import dataclass
 class DryFriction:
     """The one integral that the closed form of gamma^2 leaves."""
 
-    reach: float = 8.5  # derived: exp(-C_b y^2) at y = reach / sqrt(C_b) is below 1e-31
-    farthest: float = 40.0  # derived: and so is exp(-2 y) there
+    reach: float = 8.5  # derived: beyond y = reach / sqrt(C_b), exp(-C_b y^2) is below 1e-31
+    farthest: float = 40.0  # derived: beyond this y, exp(-2 y) is below 1e-31, too
     tolerance: float = 1e-13  # chosen: relative error asked of the quadrature, near rounding
-    rounding: float = 8.0  # chosen: eps per factor of the integrand, with some to spare
+    rounding: float = 8.0  # chosen: rounding error in eps, some for each factor of the integrand
 
 
 @dataclass(frozen=True)
@@ -18,14 +21,15 @@ class SpectralElements:
     """Mesh of the Galerkin method in L^2(m)."""
 
     depth: float = 80.0  # chosen: the mesh ends where m has fallen by exp(-80) = 2e-35
-    finest: float = 2.0**-7  # chosen: width of the elements next to a kink, ...
-    per_knot: float = 4.0  # chosen: ... or the distance of the kink from 0 over it, if larger
+    finest: float = 2.0**-7  # chosen: least width of the elements next to a kink; narrower ones
+    #                          lose digits by rounding
+    per_knot: float = 4.0  # chosen: they are not narrower than the kink's distance from 0 over this
     fewest: float = 8.0  # chosen: elements on half of the axis, at least
-    step: float = 1.25  # chosen: the end of the mesh is found up to this factor
-    past_start: float = 1.5  # chosen: the mesh ends at so many times the start, or farther
+    step: float = 1.25  # chosen: factor up to which the end of the mesh is found
+    past_start: float = 1.5  # chosen: the mesh ends at so many times the start, or farther out
     degree_of_mean: int = 12  # chosen: converged for every n, tests/.../test_eigenfunctions.py
     extra_points: int = 16  # chosen: Gauss points beyond the degree, for exp(-Phi) in an element
-    least_nu: float = 1e-13  # derived: 1/(1 + lambda/C_b) of a mode below it is rounding
+    least_nu: float = 1e-13  # derived: modes with a smaller 1/(1 + lambda/C_b) consist of rounding
     rounding: float = 4.0  # fitted: twice the largest error seen against the closed form, over
     #                        n = 100 ... 1e6 and C_b = 0.2 ... 5, relative to eps degree^2 / width
 
@@ -34,16 +38,18 @@ class SpectralElements:
 class Quadrature:
     """Adaptive composite Gauss-Legendre quadrature."""
 
-    depth: float = 690.0  # derived: exp(-690) = 1e-300 is about the smallest normal number
-    steepest: float = 4.0  # derived: exp(-2x) on [-1, 1], which four units of depth amount to,
+    depth: float = 690.0  # derived: the axis ends where m has fallen by exp(-690) = 1e-300, close
+    #                       to the smallest number with full precision
+    steepest: float = 4.0  # derived: change of Phi over an element, at most; exp(-2x) on [-1, 1]
     #                        has Legendre coefficients below 1e-17 from degree 18 on
-    resolved: float = 1e-13  # chosen: effect on gamma^2 at which an element is left: 500 eps
+    resolved: float = 1e-13  # chosen: relative effect on gamma^2 below which an element is not
+    #                          halved; 500 eps
     noise: float = 100.0  # chosen: last Legendre coefficients below so many eps may be rounding
     rounds: int = 120  # chosen: halvings after which a formula is given up, as at a pole
     most_elements: int = 3000  # chosen: a formula that needs more has a pole
     sampled: int = 60  # chosen: elements on which g is also evaluated to many digits
     digits: int = 40  # chosen: decimal digits of these evaluations, more than cancellation takes
-    pairwise: int = 32  # derived: additions in a row in numpy's pairwise sums of 1e6 numbers
+    pairwise: int = 32  # derived: roundings that add up in numpy's pairwise sum of 1e6 numbers
 
 
 DRY_FRICTION = DryFriction()

@@ -1,9 +1,13 @@
 """The martingale of the Poisson solution as a control variate.
 
-With -A u = g - E g, int_0^t g - t E g = u(Z_0) - u(Z_t) + M(t), M(t) = int_0^t sigma u'(Y) dW.
-M and M^2 - <M> have the mean zero, and carry almost all of the variance of the integral and of its
-square. The mean is exactly zero for the time-stepping scheme, too: each step adds to M a polynomial
-of its increment whose mean is zero given the past.
+A control variate is a random variable of known mean that is correlated with the one whose mean is
+wanted; subtracting a multiple of it reduces the standard error. From -A u = g - E g follows
+
+    int_0^t g - t E g = u(Z_0) - u(Z_t) + M(t),    M(t) = int_0^t sigma u'(Y) dW.
+
+M and M^2 - <M> have the mean zero and, over long times, carry almost all of the variance of the
+integral and of its square. Their means are exactly zero for the time-stepping scheme, too: each
+step adds to M a polynomial of the step's noise whose mean is zero given the past.
 """
 
 from dataclasses import dataclass
@@ -19,12 +23,12 @@ from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 
-DEGREE = 12  # of the polynomial that kernels evaluate; it is off by less than 5 % of u'
+DEGREE = 12  # of the polynomial in place of u' that kernels evaluate; its error is below 5 % of u'
 
 
 @dataclass(frozen=True)
 class PoissonSlope:
-    """u' of a scene, tabulated.
+    """A table of u', the slope of the Poisson solution of a scene.
 
     Attributes
     ----------
@@ -66,7 +70,7 @@ class PoissonSlope:
 def poisson_slope(scene: Scene) -> PoissonSlope | None:
     """Tabulate u' of a one-dimensional scene with white noise.
 
-    By (m u')' = -2/sigma^2 (g - E g) m, integrated from the nearer end.
+    The equation (m u')' = -2/sigma^2 (g - E g) m is integrated from the nearer end of the axis.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Ensembles of paths: blocks of lanes marched in parallel and summed in order."""
+"""Ensembles of paths: blocks are simulated in parallel and their results added in order."""
 
 import os
 from collections.abc import Callable, Iterable
@@ -33,7 +33,7 @@ def parallel(work: Callable, jobs: Iterable, threads: int | None = None) -> list
 def gram(
     scene: Scene, times: ArrayLike, sampling: Sampling, control: bool = True, parts: int = 1
 ) -> np.ndarray:
-    """Simulate an ensemble, or a part of it, and add up what its moments are made of.
+    """Simulate an ensemble, or a part of it, and return the sums that its moments are made of.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def gram(
     control : bool
         Whether to run the control variate, where there is one.
     parts : int
-        Into how many each step is divided.
+        Number of shorter steps into which each step is divided.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def gram(
 def over_blocks(
     scene: Scene, grid: list, sampling: Sampling, reduce: Callable, control: bool = True
 ) -> list:
-    """Simulate every block of paths and keep what is wanted of it at the output times.
+    """Simulate every block of paths and collect results at the output times.
 
     Parameters
     ----------
@@ -82,15 +82,15 @@ def over_blocks(
     sampling : Sampling
         Its step is not used: the grid has the steps.
     reduce : callable
-        Takes a block's panel at an output time and the number of its paths, returns an array to
-        be kept.
+        Takes a block's panel (`kernels.panel`) at an output time and the number of its paths;
+        returns an array, which is kept.
     control : bool
         Whether to run the control variate, where there is one.
 
     Returns
     -------
     list of numpy.ndarray
-        One per block, with the output time in front.
+        One per block; the first axis is the output time.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
     Returns
     -------
     numpy.ndarray, shape (t + 1, k + 1, paths)
-        The scene's k state variables and D, time 0 included.
+        The scene's k state variables and D = int_0^t g, time 0 included.
     """
     rows = [row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in scene.state]
     double = replace(sampling, precision="float64")
@@ -151,7 +151,8 @@ def integrals_at(
     Returns
     -------
     numpy.ndarray, shape (t, 3, paths)
-        D, M and <M>; the last two are 0 without a control variate.
+        D, its martingale part M and the quadratic variation <M>; the last two are 0 without a
+        control variate.
     """
 
     def totals(panel, count):
@@ -174,7 +175,7 @@ def coupled(
     scene, times
         As for `gram`.
     sampling : Sampling
-        With the longer of the two steps, and from the first path on.
+        With the longer of the two steps; it must begin with the first path.
     levels : (float, float)
         Lower and upper level whose first passage by D is timed.
 
@@ -217,7 +218,7 @@ def coupled(
 
 
 def require_finite(results: Iterable) -> None:
-    """Refuse results of paths that left every bound.
+    """Refuse results that are not finite, because paths have diverged.
 
     Raises
     ------

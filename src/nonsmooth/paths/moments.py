@@ -1,4 +1,4 @@
-"""Moments of int g from sums over paths, by regression on the control variates."""
+"""Mean and variance of int g from sums over paths, and the bias of the time step."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,24 +10,27 @@ _MOMENTS = ("mean", "mean_error", "variance", "variance_error")
 
 
 def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
-    """Mean and variance of D, their standard errors, by regression on the control variates.
+    """Mean and variance of D = int_0^t g and their standard errors.
+
+    Where the paths carry control variates, regression on them reduces the errors.
 
     Parameters
     ----------
     gram : array_like, shape (t, 5, 5)
-        From `gram`, of all parts of the ensemble together.
+        From `ensembles.gram`; the sum over the parts, if the ensemble was simulated in parts.
 
     Returns
     -------
     dict
         Arrays over time: `mean`, `mean_error`, `variance`, `variance_error` (standard errors). At
-        early times no path may have moved yet. Their errors are then as if one path had, by as much
-        as paths have on average at the first time at which some have.
+        early times it may be that D = 0 on all paths, so that the sample shows no spread. The
+        errors are then those of a sample in which D differs from 0 on one path. The size of D there
+        is taken from the first output time at which it differs from 0 on some path.
 
     Raises
     ------
     SceneError
-        If the spread is lost in the mean, or no path has moved by the last time.
+        If the spread is lost in rounding of the mean, or D = 0 on all paths at the last time.
     """
     gram = np.asarray(gram)
     paths = gram[:, 0, 0]
@@ -49,7 +52,7 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
                 "subtract the mean from g or take more paths"
             )
         plain = c[1, 1] * count / (count - 1)
-        # To first order the sample variance is the mean of D^2 - 2 E[D] D.
+        # To first order in the fluctuations the sample variance is the mean of D^2 - 2 E[D] D.
         for name, value, weights in (
             ("mean", a[1], np.array([0, 1, 0, 0, 0])),
             ("variance", plain, np.array([0, -2 * a[1], 1, 0, 0])),
@@ -59,20 +62,21 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
             result[name][k] = value - slope @ a[3:]
             result[f"{name}_error"][k] = np.sqrt(max(weights @ c @ weights, 0.0) / count)
     first = int(np.argmax(moved))
-    square = gram[first, 2, 2] / gram[first, 1, 1]  # E D^4 / E D^2 of the moved paths
+    square = gram[first, 2, 2] / gram[first, 1, 1]  # the size of D^2: E D^4 / E D^2
     result["mean_error"][:first] = np.sqrt(square) / paths[:first]
     result["variance_error"][:first] = square / paths[:first]
     return result
 
 
 def step_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]:
-    """Bias of the variance of D by the step, from `coupled`, and its standard error.
+    """Bias of the variance of D due to the time step, and its standard error.
 
     Parameters
     ----------
     change : numpy.ndarray, shape (t, 4, 4)
+        From `ensembles.coupled`.
     order : float
-        Weak order q of the scheme: the bias is the change by halving over 1 - 2^-q.
+        Weak order q of the scheme: the bias is what halving the step changes over 1 - 2^-q.
 
     Returns
     -------
@@ -82,7 +86,7 @@ def step_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]
     average = change[:, 0] / count
     covariance = change / count[..., None] - average[:, :, None] * average[:, None, :]
     shift, square, mean = average[:, 1:].T
-    # Var D_h - Var D_h/2, and its derivatives by the averages.
+    # Var D_h - Var D_h/2, and its derivatives with respect to the averages
     value = square - shift * (2 * mean + shift)
     weights = np.stack([0 * mean, -2 * (mean + shift), 0 * mean + 1, -2 * shift], axis=1)
     factor = 1 / (1 - 2**-order)
@@ -91,7 +95,7 @@ def step_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]
 
 
 def mean_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]:
-    """Bias of the mean of D by the step, and its standard error; see `step_bias`."""
+    """Bias of the mean of D due to the time step, and its standard error; see `step_bias`."""
     count = change[:, 0, 0]
     shift = change[:, 0, 1] / count
     spread = np.sqrt(np.maximum(change[:, 1, 1] / count - shift**2, 0.0) / count)
@@ -100,6 +104,6 @@ def mean_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]
 
 
 def variance_of_fine(change: np.ndarray) -> np.ndarray:
-    """Variance of D with the half step, from `coupled`, shape (t,)."""
+    """Variance of D with the half step, shape (t,); `change` is from `ensembles.coupled`."""
     count = change[:, 0, 0]
     return change[:, 3, 3] / count - (change[:, 0, 3] / count) ** 2

@@ -17,19 +17,19 @@ from nonsmooth.scenes.scene import Scene
 
 
 def coarse_step(scene: Scene, scheme: str = "strang") -> float:
-    """Step from which the search for one with a given bias starts."""
+    """Step of the first pilot, from which a step with a small enough bias is found."""
     longest = registry.scheme(scene, scheme).longest_step(scene)
     chosen = tuning.MONTE_CARLO
     return min(chosen.coarse_step * min(1.0, 1 / scene.damping), chosen.stable_share * longest)
 
 
 def first_step(scene: Scene, times: np.ndarray, scheme: str = "strang") -> float:
-    """Step from which the search starts if the paths end at the last of the times."""
+    """Step of the first pilot if the paths end at the last of the times."""
     return min(coarse_step(scene, scheme), float(times[-1]) / tuning.MONTE_CARLO.least_steps)
 
 
 def paths_for(deviation: float, tol: float) -> int:
-    """Count the paths on whose average, of a given standard deviation, `tol` can be promised."""
+    """Count the paths whose average, of a given standard deviation each, is within `tol`."""
     chosen = tuning.MONTE_CARLO
     return math.ceil((chosen.sigmas * deviation / (chosen.spread_share * tol)) ** 2)
 
@@ -42,7 +42,7 @@ def paths_of_variance(tol: float) -> int:
 
 
 def halving_paths(paths: int) -> int:
-    """Count the paths that measure the bias of the step, if there are so many altogether."""
+    """Count the paths that measure the bias of the step, of a given number of paths altogether."""
     return min(paths, max(tuning.MONTE_CARLO.pilot_paths, paths // tuning.MONTE_CARLO.halved))
 
 
@@ -69,7 +69,7 @@ def require_possible(
 
 
 def refined_step(step: float, bias: float, allowed: float, order: float) -> float:
-    """Step at which a bias known at a coarser one is as small as allowed, by the weak order."""
+    """Step whose bias is as small as allowed, from a known bias at `step` and the weak order."""
     return float(step * min(1.0, (allowed / bias) ** (1 / order)))
 
 
@@ -86,7 +86,7 @@ def halved_step_bias(scene: Scene, times: ArrayLike, sampling: Sampling) -> dict
     if chosen.shares_noise:
         change, _ = coupled(scene, times, sampling)
         return {"mean": mean_bias(change, order), "variance": step_bias(change, order)}
-    # Independent runs on a grid and on its halves.
+    # without common noise: independent runs with the steps and with their halves
     more = replace(sampling, paths=4 * sampling.paths)
     coarse, fine = (moments(gram(scene, times, more.labelled(k), parts=k)) for k in (1, 2))
     factor = 1 / (1 - 2**-order)
@@ -107,7 +107,10 @@ def choose_step(
     threads: int | None,
     scheme: str,
 ) -> float:
-    """Find the step whose relative bias of the variance is below `tol`, from a coarse pilot."""
+    """Find the step whose relative bias of the variance is below `tol`.
+
+    The bias is measured at a long step, in a small sample, the pilot, and extrapolated.
+    """
     step = first_step(scene, times, scheme)
     pilot = Sampling(
         step,
@@ -126,7 +129,7 @@ def require_resolved(step: float, variance: float, bias: float, error: float) ->
     """Refuse a step so long that halving it does not measure its bias.
 
     The bias follows the weak order only if the step is short against every time scale of the scene,
-    that of g included. It is then small against the variance.
+    that of g included. It is then small against the variance; if it is not, the step is refused.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What one Monte Carlo run consists of, in one record."""
+"""The settings of one Monte Carlo run, in one record."""
 
 from dataclasses import dataclass, replace
 
@@ -18,8 +18,8 @@ class Sampling:
     seed : int or tuple
         The same seed gives the same bits whatever the number of threads.
     first_path : int
-        Number of the first path, a multiple of the block size: an ensemble can be simulated in
-        parts.
+        Number of the first path, a multiple of the block size. By this an ensemble can be
+        simulated in parts.
     threads : int, optional
         All cores unless given.
     scheme : str
@@ -37,5 +37,5 @@ class Sampling:
     precision: str = "float32"
 
     def labelled(self, label: str | int) -> "Sampling":
-        """Return the same with a seed of its own, whose paths are independent of these."""
+        """Return the same settings with another seed, whose paths are independent of these."""
         return replace(self, seed=labelled(self.seed, label))

@@ -1,4 +1,4 @@
-"""Simulation of a scene: `simulate`."""
+"""The public function `simulate`: paths of a scene, or the moments of int g over many of them."""
 
 from dataclasses import replace
 
@@ -45,9 +45,9 @@ def simulate(
     horizon : float
         Final time, "1".
     tol : float
-        Relative error wanted of the variance of D = int_0^horizon g: it decides, unless given,
-        on the number of paths (three standard errors are three quarters of it) and on the
-        longest step (its bias is a quarter of it).
+        Relative error wanted of the variance of D = int_0^horizon g. The number of paths and
+        the step follow from it unless they are given: three standard errors are three quarters
+        of `tol`, and the bias of the step is a quarter.
     step : float, optional
         Longest time step, "1".
     paths : int, optional

@@ -9,8 +9,8 @@ from nonsmooth.paths import tuning
 def logarithmic(first: float, last: float, count: int) -> np.ndarray:
     """Return times from `first` to `last`, nearly equidistant in the logarithm.
 
-    They are multiples of a tenth of `first`, so that schemes with a constant step meet them;
-    neighbours that coincide are merged.
+    They are multiples of a tenth of `first`, so that schemes with a constant step can meet them.
+    Times that coincide after rounding are given once.
 
     Returns
     -------

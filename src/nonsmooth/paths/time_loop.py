@@ -1,4 +1,8 @@
-"""The one loop over time steps: every scheme, every scene, all the lanes of a panel."""
+"""The loop over time steps, one for all schemes and scenes.
+
+It advances the paths of one panel (see `kernels.panel`). When the loop is compiled, the type of the
+coefficients it is given decides which scheme's `flow` and `kick` are called in it.
+"""
 
 import numba
 import numpy as np
@@ -52,6 +56,7 @@ def _choose_kick(s, data, normal, lanes):
 
 @inlined
 def _of_known_shape(panel):
+    # Rows of a known length cannot overlap, which lets the compiler use vector instructions.
     return (
         numba.carray(_pointer(panel.words.ctypes), (4, WIDTH)),
         numba.carray(_pointer(panel.data.ctypes), (ROWS, WIDTH)),
@@ -61,7 +66,7 @@ def _of_known_shape(panel):
 
 @kernel
 def march(s, panel, lanes, steps, lower, upper):
-    """Advance the paths of a panel and drop those whose int g reaches one of the levels.
+    """Advance the paths of a panel; drop those whose int g has reached one of the levels.
 
     Parameters
     ----------
@@ -72,8 +77,8 @@ def march(s, panel, lanes, steps, lower, upper):
         Number of paths.
     steps : int
     lower, upper : float
-        Levels, infinite if there are none. The extremes over all steps are compared with them,
-        after every `FLUSH` steps and at the end.
+        Levels, infinite if there are none. After every `FLUSH` steps, and at the end, the extremes
+        of int g over all steps so far are compared with them.
 
     Returns
     -------
@@ -94,7 +99,7 @@ def march(s, panel, lanes, steps, lower, upper):
                 normal = 0
             _kick(s, data, normal, lanes)
             normal += s.normals
-        if lower != -upper:  # For equal levels max |int g| is enough, which every step keeps.
+        if lower != -upper:  # for levels -b and b, max |int g| is enough, which is kept anyway
             follow_extremes(data, lanes)
         if (k + 1) % FLUSH == 0 or k == steps:
             flush(data, total, lanes)
@@ -112,7 +117,8 @@ def march_pair(fine, coarse, panel, other, lanes, steps, lower, upper, began, pa
     fine, coarse : NamedTuple
         Coefficients of a scheme, of steps h/2 and h; the coarse ones take increments as given.
     panel, other : Panel
-        Of the fine and of the coarse paths; the generators are the first's.
+        Of the fine and of the coarse paths. Random numbers are drawn from the generators of the
+        first.
     lanes : int
         Number of paths.
     steps : int
@@ -142,6 +148,7 @@ def march_pair(fine, coarse, panel, other, lanes, steps, lower, upper, began, pa
             normal = 1 if odd and fine.normals == 1 else 0
             if normal == 0:
                 normals(words, data, lanes)
+            # join the noise of two fine steps to that of one coarse step, see `scheme.Coefficients`
             for i in range(lanes):
                 first = data[normal, i]
                 second = data[1, i] if fine.normals == 2 else like(e, 0.0)

@@ -1,4 +1,7 @@
-"""Tuned numbers of the simulation, with their origin."""
+"""Numbers that were chosen for the simulation, a record for each method.
+
+Each number has a line that says what it is and where it comes from.
+"""
 
 from dataclasses import dataclass
 
@@ -7,31 +10,38 @@ from dataclasses import dataclass
 class MonteCarlo:
     """How a tolerance becomes a number of paths and a time step."""
 
-    # chosen: a percent, what pilots of thousands of paths and a short run after them reach
+    # chosen: default tolerance of Monte Carlo, one per cent, which a pilot and a short run reach
     tolerance: float = 1e-2
-    # chosen: standard errors that must fit into the tolerance; one result in 400 misses it
+    # chosen: standard errors that must fit into the tolerance; one result in 370 is farther off
     sigmas: float = 3.0
-    # derived: part of the tolerance for them; the least work where the bias falls as step^(3/2)
+    # derived: part of the tolerance that is left to the standard errors; the work is least with
+    # this part if the bias falls like step^(3/2)
     spread_share: float = 0.75
-    # chosen: part of the tolerance at which the bias is aimed when a step is refined from a pilot
+    # chosen: part of the tolerance that the bias shall have, when the step is chosen from a pilot;
+    # less than it may have, because the pilot knows the bias roughly
     bias_aim: float = 0.12
-    # chosen: paths of a pilot, which knows a variance to two per cent
+    # chosen: paths of a pilot, a small sample from which the number of paths and the step are
+    # chosen; it knows a variance to two per cent
     pilot_paths: int = 4096
-    # chosen: one in so many paths is run again with half the step, an eighth of the work and more
+    # chosen: for so many paths one is simulated with the step and with half of it, to measure the
+    # bias; this costs as much as three
     halved: int = 8
-    # chosen: pilots, each with the sizes that the last one asks for; two are enough as a rule
+    # chosen: largest number of samples, each with the paths and the step that the one before asks
+    # for; two are enough as a rule
     attempts: int = 5
-    # chosen: steps of all paths together, hours
+    # chosen: largest number of steps of all paths together, which take hours
     most_steps: float = 1e13
-    # chosen: step of the first pilot, times the smaller of 1 and 1/C_b; its bias is a few per cent
+    # chosen: step of the first pilot in units of the smaller of 1 and 1/C_b; its bias is a few per
+    # cent
     coarse_step: float = 0.1
-    # chosen: steps at least in the time of the first pilot
+    # chosen: least number of steps of a path of the first pilot
     least_steps: int = 32
     # chosen: largest relative bias of Var D at which halving the step measures it
     measurable: float = 0.2
-    # chosen: part of the step of the first pilot over the longest stable one
+    # chosen: the step of the first pilot is at most this part of the longest stable one
     stable_share: float = 0.25
-    # derived: a variance over the mean square below which it has lost all but six digits
+    # derived: a variance that is smaller than this part of the mean square has lost all but six
+    # digits by rounding
     resolved: float = 1e-10
 
 
@@ -42,7 +52,8 @@ MONTE_CARLO = MonteCarlo()
 class TimeGrid:
     """Steps of a simulation between its output times."""
 
-    # chosen: steps at least up to the first output time, so that early times are resolved as well
+    # chosen: least number of steps up to each output time, counted from 0, so that early times are
+    # resolved as well as late ones
     first_steps: int = 16
 
 
@@ -51,9 +62,10 @@ TIME_GRID = TimeGrid()
 
 @dataclass(frozen=True)
 class ControlVariate:
-    """Table of the slope of the Poisson solution."""
+    """Table of the slope of the Poisson solution, from which the control variate is made."""
 
-    # chosen: equidistant points; a kick at the shortest steps used is several spacings
+    # chosen: number of equidistant points; the noise of a step is several spacings wide at the
+    # shortest steps in use
     points: int = 4097
     # chosen: the table ends where the density is exp(-20) = 2e-9 of the largest
     depth: float = 20.0
@@ -64,15 +76,16 @@ CONTROL_VARIATE = ControlVariate()
 
 @dataclass(frozen=True)
 class StableStep:
-    """Where the scheme `strang` looks for the stiffest place of U and of a nonlinear noise."""
+    """Where the scheme `strang` looks for the largest U'' and the fastest place of a noise."""
 
-    # chosen: largest displacement without walls, a few units
+    # chosen: largest displacement looked at where there are no walls, a few units
     free: float = 5.0
-    # chosen: how far beyond a wall at n = inf, which a finite n lets paths pass
+    # chosen: how far to look beyond a wall, into which paths dive if n is finite
     beyond: float = 0.5
-    # chosen: points on that interval
+    # chosen: number of displacements looked at
     points: int = 401
-    # chosen: values of the noise's variables looked at, and points on each axis
+    # chosen: largest value looked at of each of the noise's variables, a few standard deviations,
+    # and the number of values
     noise: float = 3.0
     noise_points: int = 25
     # derived: longest stable step of U's kicks times the root of its largest second derivative

@@ -1,5 +1,9 @@
 """Compiled building blocks of the simulation: loops over the paths of one block.
 
+The paths of a block lie side by side in the columns of an array; a column is called a lane. Loops
+over lanes have no branches, so that the compiler turns them into vector instructions, which advance
+several paths at once.
+
 - `panel`: the arrays that hold a block of paths, one path in each column
 - `random_numbers`: a stream of normal numbers for each path
 - `exact_flows`: exact flows of the piecewise linear parts of the equations of motion

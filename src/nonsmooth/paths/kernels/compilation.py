@@ -1,7 +1,10 @@
-"""How the numerical kernels are compiled: no fast-math, no GIL, cached by content.
+"""How the numerical kernels are compiled.
 
-Numba's own cache notices a change of the file that holds a kernel, but not of the files that the
-kernel calls into. The cache folder is therefore named after the content of the whole library.
+Floating-point operations are not reordered (no fast-math), so that results do not depend on how the
+compiler vectorises a loop. Kernels release Python's global lock (GIL), so that threads run at the
+same time. Machine code is cached on disk. Numba's own cache notices a change of the file that holds
+a kernel, but not of the files that the kernel calls into. The cache folder is therefore named after
+the content of the whole library.
 """
 
 import hashlib
@@ -30,5 +33,5 @@ def kernel(function: Callable, forceinline: bool = False) -> Callable:
 
 
 def inlined(function: Callable) -> Callable:
-    """Compile a function into its callers: a loop over lanes vectorises only without calls."""
+    """Compile a function into its callers: a loop is only vectorised if there is no call in it."""
     return kernel(function, forceinline=True)

@@ -10,14 +10,14 @@ from numba import types
 from numba.extending import intrinsic
 
 
-@cache  # Nothing is ever dropped, because kernels keep the addresses.
+@cache  # without a limit: a dropped function would leave kernels with an invalid address
 def compiled(
     expression: sympy.Expr, variables: tuple[sympy.Symbol, ...], precision: str = "float64"
 ) -> Any:
-    """Compile an expression to a C function over the lanes of a panel.
+    """Compile an expression to a C function over the lanes of a panel (see `kernels.panel`).
 
-    Kernels take its address. Their type then does not depend on the formula, so that they are
-    compiled once and cached on disk for all potentials.
+    Kernels are given its address, an integer. Their types do not depend on the formula then, so
+    that they are compiled once for all formulas and cached on disk.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def compiled(
     variables : tuple of sympy.Symbol
         The rows of the panel's state, in order.
     precision : {"float64", "float32"}
-        Type of the values; the formula itself is evaluated as written.
+        Type of the values.
 
     Returns
     -------

@@ -1,7 +1,8 @@
 """Exact flows of the piecewise-linear parts of the equations of motion, without branches.
 
-They are exact for every penalization, infinity included, which makes every splitting built
-on them stable for every n at every step; a loop over lanes vectorises them.
+They are exact for every penalization, infinity included, so that splittings built on them are
+stable for every n at every step. Both sides of every choice are computed and one is selected, so
+that loops over paths are turned into vector instructions.
 """
 
 import math
@@ -38,15 +39,16 @@ def relax(z, t, drive, rate):
 
 @inlined
 def _nonzero(rate):
-    """Return a rate to divide by; the least one makes the exponential a straight line."""
+    """Replace a rate of 0, by which one cannot divide, by one too small to make a difference."""
     return maximum(rate, like(rate, 1e-15))
 
 
 @inlined
 def _arrival(gap, speed, rate, inverse):
-    """Time to cover a gap at whose end the speed is `speed`, having decayed at a rate.
+    """Time to cover the distance `gap` with a speed that decays exponentially at `rate`.
 
-    Infinite if the motion dies out before the end; 0 if the end has been passed.
+    `speed` is the speed at the end of the gap. The time is infinite if that is not positive, since
+    the motion then ends before, and 0 if the end has been passed already.
     """
     time = log1p(rate * gap / speed) * inverse
     zero = like(gap, 0.0)
@@ -59,7 +61,8 @@ def penalised(z, t, drive, rate, knot, inner, outer):
 
     phi_n' is odd with slope `inner` up to `knot` and `outer` beyond. The right-hand side is
     continuous and decreasing in z, so that z moves monotonically through at most three pieces.
-    Speeds are taken relative to those at the knots, which stiff pieces do not swallow.
+    Within a piece the speed is calculated from that at a knot: where the slope is large, rounding
+    of z would spoil it otherwise.
     """
     near, far = _nonzero(rate + inner), _nonzero(rate + outer)
     inverse_near, inverse_far = like(z, 1.0) / near, like(z, 1.0) / far
@@ -95,10 +98,11 @@ def dry_friction(z, t, drive, rate):
     one = like(z, 1.0)
     rate = _nonzero(rate)
     side, size = math.copysign(one, z), abs(z)
-    speed = one - side * drive  # towards 0, and there
+    speed = one - side * drive  # towards 0, on arrival there
     need = _arrival(size, speed, rate, one / rate)
     slips = t < need
-    place = where(slips, size, size * like(z, 0.0))  # not a number stays one
+    # the product is 0, but stays NaN for a path that has diverged, so that this is noticed
+    place = where(slips, size, size * like(z, 0.0))
     slip = side * drive - minimum(maximum(side * drive, -one), one)
     outward = where(slips, -fma(rate, size, speed), slip)
     left = where(slips, t, t - need)

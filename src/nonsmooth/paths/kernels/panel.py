@@ -1,7 +1,8 @@
-"""A panel: the paths of one block side by side, one lane each, in arrays that fit a core's cache.
+"""A panel: the paths of one block side by side in arrays that fit into a core's cache.
 
-All loops over lanes are without branches and calls, so that the compiler vectorises them. Time
-integrals gather in working precision for a few steps and then in double precision.
+Each path has a column of its own, called a lane. Loops over lanes have no branches and no calls, so
+that the compiler turns them into vector instructions. Time integrals are added up in the precision
+of the steps for a few steps (see `FLUSH`), and these sums in double precision.
 """
 
 from typing import NamedTuple
@@ -17,8 +18,9 @@ from nonsmooth.scenes.symbols import STATE_VARIABLES
 FLUSH = 64  # steps after which integrals are added in double precision
 
 _CACHE_LINE = 64  # bytes
-# A row is an odd number of cache lines wide. Equal places of two rows then lie in different cache
-# sets and do not push each other out.
+# Length of a row: a bit more than the number of paths, so that it is an odd number of cache lines.
+# The same column of different rows then lies in different sets of the cache, and rows do not push
+# each other out.
 WIDTH = 1008
 
 # Rows of `data`. 0 to 3: normal numbers. 4 to 7: the state. 8 to 15: scratch. From 16 on:
@@ -70,7 +72,7 @@ def new_panel(scene: Scene, seed: int | tuple, block: int, precision: str = "flo
 
 
 def _aligned(rows, kind):
-    """Zeros whose rows start at cache lines, so that no vector lies across two."""
+    """Zeros whose rows begin with a cache line, so that no vector lies across two of them."""
     size = rows * WIDTH * np.dtype(kind).itemsize
     memory = np.zeros(size + _CACHE_LINE, dtype=np.uint8)
     first = -memory.ctypes.data % _CACHE_LINE
@@ -109,10 +111,10 @@ def follow_extremes(data, lanes):
 
 @kernel
 def retire(words, data, total, lanes, lower, upper):
-    """Drop the lanes whose int g has reached one of the levels; return how many are left.
+    """Drop the paths whose int g has reached one of the levels; return how many are left.
 
-    A path that has become infinite is not dropped, so that the divergence is noticed at the end.
-    The last lane takes the place of a dropped one, so that those left stay side by side.
+    The last lane takes the place of a dropped one, so that those left stay side by side. A path
+    that has become infinite is not dropped, so that the divergence is noticed at the end.
     """
     symmetric = lower == -upper
     i = 0

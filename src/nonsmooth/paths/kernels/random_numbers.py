@@ -1,7 +1,7 @@
-"""Random streams: one per fixed-size block of paths, derived from (seed, scene, block).
+"""Random streams: one for each block of 1000 paths, derived from (seed, scene, block).
 
 The generator is xoshiro128++ 1.0 (D. Blackman, S. Vigna, ACM Trans. Math. Softw. 47, 2021):
-128 bits of state and 32 bits per draw, which is what the lanes of a vector register hold. Each
+128 bits of state and 32 bits per draw, which suits the 32-bit units of vector instructions. Each
 path has a generator of its own; the 128 bits that seed each are drawn from SFC64, which numpy's
 SeedSequence seeds with (seed, scene, block). Two draws become two normal numbers (Box and Muller
 1958); the first has a resolution of 2^-32, so that they reach 6.66 standard deviations.
@@ -68,7 +68,7 @@ def blocks(first: int, count: int) -> list[tuple[int, int]]:
 
 
 def labelled(seed: int | tuple, label: str | int) -> tuple:
-    """Return the seed of another ensemble, independent of that of `seed`."""
+    """Return the seed of another ensemble, whose paths are independent of those of `seed`."""
     return (*seed, label) if isinstance(seed, tuple) else (seed, label)
 
 
@@ -106,7 +106,9 @@ def _box_muller(like_this, first, second):
 
 @inlined
 def normals(words, out, lanes):
-    """Fill out[0] and out[1] with independent standard normal numbers, one generator a lane.
+    """Fill out[0] and out[1] with independent standard normal numbers.
+
+    Each lane has its own generator, from which its two numbers are drawn.
 
     Parameters
     ----------

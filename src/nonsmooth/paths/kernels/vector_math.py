@@ -1,8 +1,8 @@
-"""Elementary functions that a loop over lanes can vectorise, in single and double precision.
+"""Elementary functions for loops that the compiler turns into vector instructions.
 
 In single precision these are branch-free polynomials (S. L. Moshier's Cephes library, good to
-about one unit in the last place), because a compiler vectorises no call of the C library. In
-double precision they are the C library's own.
+about one unit in the last place), because a loop with calls of the C library is not
+vectorised. In double precision they are the C library's own.
 """
 
 import math
@@ -82,7 +82,7 @@ def where(typing, condition, x, y):
 
 
 def _extremum(comparison, documentation):
-    """Declare the choice of y where `y comparison x` holds, else x: what one instruction does."""
+    """Make a function of (x, y): y where `y comparison x` holds, else x; a single instruction."""
 
     @intrinsic
     def extremum(typing, x, y):
@@ -102,9 +102,10 @@ minimum = _extremum("<", "The smaller number; x if either is not a number.")
 
 
 def _extreme_number(name, documentation):
-    """Declare the choice of the one that is a number, which `maximum` and `minimum` are not.
+    """Make a function of (x, y): the larger or smaller; if one is not a number, the other one.
 
-    Unlike these it stays one instruction where the result is stored in the place of x.
+    `maximum` and `minimum` give x if either is not a number. Unlike these, the function made here
+    stays a single instruction also where its result replaces x in memory.
     """
 
     @intrinsic
@@ -170,7 +171,7 @@ def _expm1(x):
 
 @inlined
 def _decay(x):
-    """exp(-x) for x >= 0 by a power of two and a power of e, to an ulp of 1."""
+    """exp(-x) for x >= 0, as a power of two times an exponential; to an ulp of 1."""
     x = maximum(x * _F(-1.44269504), _F(-126.0))
     # adding 1.5 * 2^23 rounds to an integer and leaves it in the lowest bits
     shifted = x + _F(12582912.0)
@@ -239,7 +240,7 @@ def _arctan2(y, x):
 
 
 def _for_kernels(single, double, documentation):
-    """Declare a function of one number that runs `single` on float32, `double` on float64."""
+    """Make a function of one number that runs `single` on float32 and `double` on float64."""
 
     def function(x):
         raise TypeError(f"{documentation} is for kernels; outside of them use numpy")

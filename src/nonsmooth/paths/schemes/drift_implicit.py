@@ -1,6 +1,7 @@
 """The drift-implicit Euler scheme for dry friction alone: weak order 1, stable at every step.
 
-The resolvent of C_b y + a_n'(y) is explicit: linear near 0, a shifted line beyond.
+A step solves y + h (C_b y + a_n'(y)) = w for y, w being the velocity after the noise. The solution
+is explicit in w: linear near 0, a shifted line beyond.
 """
 
 import math
@@ -20,7 +21,7 @@ from nonsmooth.scenes.scene import Scene
 class DriftImplicit(NamedTuple):
     """Coefficients of the scheme.
 
-    Below `bound` the resolvent is `inner` w, beyond it `outer` (w - `shift`).
+    For w > 0 the solution is `inner` w up to w = `bound`, and `outer` (w - `shift`) beyond.
     """
 
     step: float
@@ -63,12 +64,12 @@ def coefficients(scene: Scene, step: float, precision: str = "float32") -> Drift
 
 @inlined
 def flow(s, data, first, last, lanes):
-    """Nothing: the steps share no part."""
+    """Do nothing: the whole step is in `kick`."""
 
 
 @inlined
 def kick(s, data, normal, lanes):
-    """One step; int g by the trapezoidal rule."""
+    """One step, with the trapezoidal rule for int g."""
     half = s.step / like(s.step, 2.0)
     for i in range(lanes):
         before = data[Y, i]

@@ -1,9 +1,10 @@
 """An exact sampler of dry friction's non-smooth limit, in a Strang splitting with the damping.
 
 For dY = -sgn(Y) dt + sigma dW the size |Y| is a Brownian motion with drift -1 reflected at 0
-(Skorokhod): |Y(h)| = X(h) - min(0, min X), X(h) = |Y(0)| - h + sigma W(h), and the minimum of
-the bridge has an explicit law given its ends. The sign after a visit to 0 is fair. One step is
-D(h/2) S(h) D(h/2), S this sampler and D the damping; neighbouring D are merged.
+(Skorokhod): |Y(h)| = X(h) - min(0, min X) with X(t) = |Y(0)| - t + sigma W(t). Given X(h), the
+minimum of X over the step has an explicit law, that of a Brownian bridge. After a visit to 0 both
+signs are equally likely. One step is D(h/2) S(h) D(h/2), where S is this sampler and D the damping;
+neighbouring D are merged.
 
 Weak order 2: the kink, which costs other splittings half an order, is inside the exact part.
 """
@@ -63,7 +64,7 @@ def flow(s, data, first, last, lanes):
 
 @inlined
 def kick(s, data, normal, lanes):
-    """One exact step: the end, the bridge's minimum and the sign from four normal numbers."""
+    """One exact step: the end of X, its minimum and the sign, from four normal numbers."""
     half, zero = s.step / like(s.step, 2.0), like(s.step, 0.0)
     for i in range(lanes):
         before = data[Y, i]
@@ -88,5 +89,5 @@ DRY_FRICTION = Scheme(
     smooth_order=2.0,
     kink_order=2.0,
     handles=handles,
-    shares_noise=False,  # The sign and the minimum of a step are not those of its halves.
+    shares_noise=False,  # the minimum and the sign of a step do not follow from those of its halves
 )

@@ -56,9 +56,9 @@ def handles(scene: Scene) -> bool:
 
 
 def longest_step(scene: Scene) -> float:
-    """Step up to which the linear equation beyond or within the knot, whichever is stiffer, decays.
+    """Step below which the scheme is stable for the linear equations within and beyond the knot.
 
-    |1 + h lambda| < 1 for every eigenvalue lambda of the drift's Jacobian.
+    That is, |1 + h lambda| < 1 for every decaying eigenvalue lambda of the drift's Jacobian there.
     """
     drift = scene.numerical_drift()
     rows = [symbol for symbol in symbols.STATE_VARIABLES if symbol.name in scene.state]
@@ -75,7 +75,7 @@ def longest_step(scene: Scene) -> float:
 
 @inlined
 def flow(s, data, first, last, lanes):
-    """Nothing: the steps share no part."""
+    """Do nothing: the whole step is in `kick`."""
 
 
 @inlined
@@ -88,7 +88,7 @@ def _gain(s, data, lanes):
 
 @inlined
 def kick(s, data, normal, lanes):
-    """One step; int g by the trapezoidal rule."""
+    """One step, with the trapezoidal rule for int g."""
     _gain(s, data, lanes)
     for row in range(4):
         evaluate(s.drift[row], data[WORK + row].ctypes, data[ZETA:].ctypes, WIDTH, lanes)

@@ -1,7 +1,8 @@
 """The Lie splitting of dry friction alone: weak order 1, stable at every step.
 
-One step is the exact Gaussian step of damping and noise, then the exact flow of the friction; int g
-by the trapezoidal rule over the whole step. What the symmetric splitting gains is seen against it.
+One step is the exact Gaussian step of damping and noise, then the exact flow of the friction. int g
+is found by the trapezoidal rule over the whole step. The scheme is there to be compared with the
+symmetric splitting `strang`.
 """
 
 import math
@@ -49,12 +50,12 @@ def coefficients(scene: Scene, step: float, precision: str = "float32") -> Lie:
 
 @inlined
 def flow(s, data, first, last, lanes):
-    """Nothing: the steps share no part."""
+    """Do nothing: the whole step is in `kick`."""
 
 
 @inlined
 def kick(s, data, normal, lanes):
-    """One step; int g by the trapezoidal rule."""
+    """One step, with the trapezoidal rule for int g."""
     half, decay, factor = s.step / like(s.step, 2.0), s.transition[0], s.factor[0]
     for i in range(lanes):
         before = data[Y, i]
@@ -71,7 +72,7 @@ LIE = Scheme(
     coefficients=coefficients,
     flow=flow,
     kick=kick,
-    smooth_order=2.0,  # Without friction the step is exact, and int g by the trapezoidal rule.
+    smooth_order=2.0,  # without friction only the trapezoidal rule for int g is not exact
     kink_order=1.0,
     handles=drift_implicit.handles,
 )

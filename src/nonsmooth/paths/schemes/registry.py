@@ -41,7 +41,7 @@ def scheme(scene: Scene, name: str = "strang") -> Scheme:
 
 
 def of_coefficients(kind: type) -> Scheme:
-    """Return the scheme whose coefficients are of that type; the time loop finds kernels by it."""
+    """Return the scheme whose coefficients are of a type; the time loop finds its kernels so."""
     return next(scheme for scheme in SCHEMES.values() if scheme.kind is kind)
 
 
@@ -62,7 +62,7 @@ def coefficients(
     step : float
     precision : {"float32", "float64"}
     control : PoissonSlope, optional
-        Schemes without a control variate leave it out.
+        Ignored by schemes that have no control variate.
 
     Returns
     -------
@@ -98,6 +98,6 @@ def _longest_step(chosen, scene):
 
 
 def on_given_increments(s: Any) -> Any:
-    """Return the coefficients for increments of the noise instead of normal numbers."""
+    """Return the coefficients of a scheme that is given the noise itself, not normal numbers."""
     one, zero = type(s.step)(1), type(s.step)(0)
     return s._replace(factor=(one, zero, one))

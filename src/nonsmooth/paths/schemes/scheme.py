@@ -11,8 +11,8 @@ from nonsmooth.scenes.scene import Scene
 class Coefficients(Protocol):
     """What kernels know of a scene, a step and a precision: a NamedTuple of numbers.
 
-    A scheme has a NamedTuple of its own, by whose type its kernels are found. It has the fields
-    below and whatever else the kernels of the scheme need. Floating-point numbers are in the
+    Every scheme has a NamedTuple of its own, by whose type the time loop finds its kernels. It
+    has the fields below and whatever else the kernels need. Floating-point numbers are in the
     precision of the simulation, as the kernels calculate in it.
 
     Attributes
@@ -77,9 +77,9 @@ class Scheme:
         (s, data, first, last, lanes) -> None, s the coefficients: what happens between two kicks.
         `first` is true before the first kick, and `last` after the last one.
     kick : kernel
-        (s, data, normal, lanes) -> None: one step on the normal numbers in the rows `normal`,
-        `normal + 1`, ... It leaves in the row GAIN what the step adds to int g, flows included that
-        have not been counted yet, and ends with `panel.observe`.
+        (s, data, normal, lanes) -> None: one step with the normal numbers in the rows `normal`,
+        `normal + 1`, ... It adds to the row GAIN what the step contributes to int g; flows may have
+        added their part before. It ends with `panel.observe`, which empties the row.
     smooth_order, kink_order : float
         Weak order q where the drift is smooth, and across the kink of a friction law: moments of
         int g are off by c h^q for short steps. Halving a step thus shows the bias, which is the

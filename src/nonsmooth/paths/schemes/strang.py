@@ -5,18 +5,19 @@ One step of length h is X(h/2) Y(h/2) N(h) Y(h/2) X(h/2):
 X   the displacement with the velocity frozen; for the obstacle, where the penalty is a
     spring, both together (free flight and elastic contact);
 Y   the velocity with displacement and forcing frozen;
-N   the noise: exact Gaussian step if its equation is linear, otherwise half a deterministic
-    flow (classical Runge-Kutta), the Brownian increment, half a flow. For white noise the
-    linear equation is d y = -C_b y dt + sigma dW.
+N   the noise: an exact Gaussian step if its equation is linear; otherwise half a step of
+    its drift alone (classical Runge-Kutta), the Brownian increment, and half a step again.
+    For white noise the linear equation is d y = -C_b y dt + sigma dW.
 
 Between two noise steps neighbouring half-flows are merged into Y(h/2) X(h) Y(h/2), or into
 Y(h) where the displacement is not needed. A noise step adds to int g the mean of g before and
-after it. If g is the penalty force, its integral is instead what the force takes from its flow,
-which is exact but for the damping within the flow of dry friction under colored noise.
+after it. If g is the penalty force, its integral over a flow is instead what the force has taken
+from the displacement or from the velocity in the flow. This is exact except for dry friction under
+colored noise, where the damping acts in the same flow.
 
-Weak order 2 where the drift is smooth, 1.5 across the kink of the friction law, stable for
-every n. Scenes that differ only in n consume the same increments: they are driven by the
-same Brownian path.
+The weak order is 2 where the drift is smooth and 1.5 across the kink of the friction law. The
+scheme is stable for every n. Scenes that differ only in n use the same random numbers: they are
+driven by the same Brownian path.
 """
 
 import math
@@ -54,7 +55,7 @@ from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import ABSOLUTE_VALUE, BARRIER
 from nonsmooth.scenes.scene import Scene
 
-# Kernels compare integers, not names.
+# Kernels compare integers instead of names.
 _PLASTIC, _FRICTION, _SPRING = 0, 1, 2  # what the penalty force is
 _WHITE, _LANGEVIN, _HAMILTONIAN = 0, 1, 2
 _NOISE_CODE = {"white": _WHITE, "langevin": _LANGEVIN, "hamiltonian": _HAMILTONIAN}
@@ -64,11 +65,17 @@ _VELOCITY, _PENALTY_FORCE, _FORMULA = 0, 1, 2  # observables
 class Strang(NamedTuple):
     """Coefficients of the splitting for one scene, one step and one precision.
 
+    `penalty`, `noise` and `observable` are codes of their kinds. `moves` tells whether the
+    displacement is part of the state, `limit` whether n = inf, `dry` whether the penalty is the dry
+    friction of the paper, `linear` whether the noise's equation is linear, and `pushed` whether U'
+    acts. `knot`, `inner` and `outer` define the penalty force; `omega` is the root of `outer`, and
+    `rate` the damping in the flow of the velocity (0 for white noise, whose step has it).
     `transition` (2 x 2, row by row, less the identity) and `factor` (lower triangle) are the
     exact Gaussian step of the linear noise's (zeta, eta), or of one variable alone in the first
-    entries. `slope`, `first_drift`, `second_drift` and `formula` are addresses of U', the noise's
-    drifts and g; 0 where they are not used, as compiling one takes a tenth of a second.
-    `control` is the polynomial in y / reach of the control variate's integrand.
+    entries. `slope`, `first_drift`, `second_drift` and `formula` are addresses of U', of the
+    noise's drifts and of g; 0 where they are not used, as compiling one takes a tenth of a second.
+    `control` holds the coefficients of a polynomial in y / `reach`, the integrand of the control
+    variate, which is used if `controlled`.
     """
 
     step: float
@@ -173,10 +180,12 @@ def handles(scene: Scene) -> bool:
 
 
 def longest_step(scene: Scene) -> float:
-    """Step up to which what is not exact is stable: the kicks of U and a nonlinear noise's flow.
+    """Step below which the parts of the splitting that are not exact are stable.
 
-    h < 2 / sqrt(max U'') for the kicks, over the displacements that the walls or a few units of
-    the state allow, and h/2 < 2.8 / rate for the Runge-Kutta half-flow. The penalty sets none.
+    These are the action of U' on the velocity, which needs h < 2 / sqrt(max U''), and the
+    Runge-Kutta half-steps of a nonlinear noise, which need h/2 < 2.8 / (their fastest rate). The
+    largest values are looked for between the walls and a bit beyond, or within a few units of 0.
+    The penalty sets no limit.
     """
     limit = math.inf
     if "x" in scene.state:
@@ -219,8 +228,8 @@ def _observable_code(scene):
 def gaussian_step(matrix: np.ndarray, sigma: float, step: float) -> tuple[tuple, tuple]:
     """Exact Gaussian step of d r = matrix r dt + sigma e_1 dW.
 
-    Its covariance is found as in Van Loan (1978) for short steps, and from the stationary one for
-    long steps.
+    For short steps the covariance is found as in Van Loan (1978), for long steps from the
+    stationary covariance.
 
     Parameters
     ----------
@@ -242,7 +251,7 @@ def gaussian_step(matrix: np.ndarray, sigma: float, step: float) -> tuple[tuple,
     if step * np.linalg.norm(matrix) < 1:
         block = np.block([[-matrix, diffusion], [np.zeros((size, size)), matrix.T]])
         covariance = transition @ scipy.linalg.expm(block * step)[:size, size:]
-    else:  # Over a long step the growing half of the block would swallow the other.
+    else:  # over a long step, growing exponentials in the block would cost all digits
         stationary = scipy.linalg.solve_continuous_lyapunov(matrix, -diffusion)
         covariance = stationary - transition @ stationary @ transition.T
     padded = np.zeros((2, 2, 2))
@@ -257,9 +266,9 @@ def gaussian_step(matrix: np.ndarray, sigma: float, step: float) -> tuple[tuple,
 @inlined
 def flow(s, data, first, last, lanes):
     """Mechanical flows between two noise steps, or the first or the last half-flows."""
-    # Every part is called in one place only, because each call of it is compiled anew.
+    # Each part is called at one place of the code only, because every call is compiled separately.
     half = s.step / like(s.step, 2.0)
-    merged = not (s.moves or first or last)  # Y(h) at once
+    merged = not (s.moves or first or last)  # Y(h) in one flow
     for part in range(2):
         skipped = (part == 1 and (merged or last)) or (part == 0 and first)
         if not skipped:
@@ -323,7 +332,7 @@ def _shake(s, data, normal, lanes):
 @inlined
 def _drift_flow(s, data, t, lanes):
     """Classical Runge-Kutta step of the deterministic part of a nonlinear noise."""
-    # The scratch rows are free here: the value of g is not in use.
+    # The scratch rows from WORK on are free here, because no value of g is kept in them now.
     stage, slope, total = WORK, WORK + 4, WORK + 6
     two, zero = like(t, 2.0), like(t, 0.0)
     for row in range(2):
@@ -362,8 +371,8 @@ def _gain(s, data, lanes):
 def _gather_martingale(s, data, normal, lanes):
     """Add the martingale's increment, c kick + c' (kick^2 - its mean)/2, and its variance.
 
-    c = u' at the state before the kick. This is u(y + kick) - u(y) to second order, less its mean;
-    first order alone would leave an error of the order of the root of the step.
+    c = u' at the state before the kick. This is u(y + kick) - u(y) to second order, minus its mean.
+    To first order only, it would leave an error of the order of the square root of the step.
     """
     one, two = like(s.reach, 1.0), like(s.reach, 2.0)
     for i in range(lanes):
@@ -402,7 +411,7 @@ def _displace(s, data, t, lanes):
             if s.limit:
                 after, x = exact_flows.elastic_impact(y, x, t)
             else:
-                # In units of the knot, where the contact begins.
+                # in units of the knot, the displacement at which the contact begins
                 after, x = exact_flows.spring_contact(per_knot * y, per_knot * x, t, s.omega)
                 after, x = s.knot * after, s.knot * x
             data[Y, i], data[X, i] = after, x
