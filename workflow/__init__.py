@@ -1,7 +1,7 @@
-"""The workflow's own Python: what the rules need besides the science.
+"""The workflow's own Python: helpers of the rules that contain no science.
 
-Importing it makes this process and the jobs it starts use the package's sources beside it,
-wherever else the package may be installed: they are the files the rules list as inputs.
+Importing this package makes the process and the jobs that it starts use the sources in `src`, even
+if the packages are also installed elsewhere. The rules list these sources as their inputs.
 """
 
 import os

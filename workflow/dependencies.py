@@ -1,4 +1,4 @@
-"""Which source files a script depends on: what Snakemake cannot see for itself."""
+"""The source files on which a script depends; Snakemake does not find them by itself."""
 
 import ast
 from functools import cache, lru_cache

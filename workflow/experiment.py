@@ -1,4 +1,4 @@
-"""What the rules need to know of the configuration."""
+"""Checks of the configuration, and what the rules derive from it."""
 
 import os
 import warnings
@@ -23,7 +23,8 @@ def check(config: dict) -> None:
     Raises
     ------
     NonsmoothError
-        One line: unknown or out-of-range key, impossible scene, unwritable folder.
+        With one line on an unknown or out-of-range key, an impossible scene, or a folder that
+        cannot be written.
     """
     validate(config, yaml.safe_load(SCHEMA.read_text(encoding="utf-8")))
     for key, number in _numbers(config):
@@ -49,7 +50,7 @@ def _numbers(value, path=""):
 
 
 def _check_dry_friction(config):
-    """Figures 2a, 2b and table 4 are compared with solvers of the velocity alone."""
+    """Refuse other scenes for figures 2a, 2b and table 4, whose solvers take the velocity alone."""
     for topic in ("variance", "crossing", "convergence"):
         scene = Scene(**config[topic]["scene"])
         if scene.state != ("y",) or scene.noise.kind != "white":
@@ -67,7 +68,10 @@ def _check_dry_friction(config):
 
 
 def _check_times(variance):
-    """Figure 2a's times are multiples of first_time/10, and the paper's scheme must meet them."""
+    """Refuse times of figure 2a that are no steps of the paper's scheme.
+
+    They are multiples of first_time/10, so twice the step must divide that.
+    """
     unit, horizon = variance["first_time"] / 10, variance["horizon"]
     if horizon <= variance["first_time"] or not _divides(unit, horizon):
         raise ConfigError(
@@ -101,7 +105,7 @@ def _check_increasing(config):
 
 
 def _check_formulas(config):
-    """Make every scene, and so read every formula; of the theorems' n and C_b the first will do."""
+    """Read every formula by making every scene; the n and C_b of the theorems do not matter."""
     for parameters in config["sweep"]["scenes"].values():
         Scene(**parameters["scene"])
     for parameters in config["gamma2"]["potentials"]["scenes"]:
@@ -112,7 +116,7 @@ def _check_formulas(config):
     for v in config["theorems"]["langevin"]:
         Langevin(v)
     with warnings.catch_warnings():
-        # U = 0 is meant where the velocity alone is covered
+        # with U = 0 the theorems cover the velocity alone, which is intended
         warnings.simplefilter("ignore", AssumptionWarning)
         for model, potentials in config["theorems"]["potentials"].items():
             for U in potentials:
@@ -149,7 +153,7 @@ def _check_scenes(key, names, choice, kind=""):
 
 
 def _check_finite_p(finite_p, crossing):
-    """Table 9's T is one of the formulas' and of Monte Carlo's."""
+    """Refuse a T of table 9 at which the formulas or Monte Carlo have no value."""
     horizon, interval = finite_p["tabulated"], crossing["horizon"] / crossing["outputs"]
     if horizon not in finite_p["horizons"] or not _divides(interval, horizon):
         raise ConfigError(
@@ -198,18 +202,21 @@ def shards(topic: dict) -> list[int]:
 
 
 def part(topic: dict, shard: str) -> tuple[int, int]:
-    """First path of a shard and number of its paths; they do not depend on the other shards."""
+    """Return the first path of a shard and the number of its paths."""
     first = int(shard) * topic["shard"]
     return first, min(topic["shard"], topic["paths"] - first)
 
 
 def halving_paths(topic: dict, p: str) -> int:
-    """Choose so many paths that halving costs the same at every p, but no more than are sampled."""
+    """Choose the paths on which the step is halved: the same cost at every p, at most all paths."""
     return min(topic["paths"], round(topic["halving"]["paths"] * max(topic["p"]) / float(p)))
 
 
 def sweep_halving(topic: dict, p: str) -> int:
-    """Choose fewer paths for longer runs, in which halving the step changes less at random."""
+    """Choose the paths on which the step is halved in the sweep.
+
+    There are fewer in longer runs, where the effect of halving the step scatters less.
+    """
     return max(1_000, round(topic["halving_paths"] / max(1.0, float(p) / 100)))
 
 

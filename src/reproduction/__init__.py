@@ -1,14 +1,15 @@
 """What only the paper needs: its results as files, figures and tables, and its examples.
 
-The workflow's scripts call this package, and it calls the library `nonsmooth`. Two packages serve
-all topics of the paper; every other module or package is one topic.
+The workflow's scripts call this package, and this package calls the library `nonsmooth`. The
+packages `jobs` and `rendering` and the module `errors` serve all topics of the paper; every other
+package or module is one topic.
 
 `jobs`
     How a script runs, and the files that it reads and writes.
 `rendering`
     Figures, tables and what the paper prints.
 `errors`
-    What a user of the workflow can cause: `ConfigError`, `ArtifactError`, `CheckError`.
+    Errors of the workflow: `ConfigError`, `ArtifactError`, `CheckError`.
 `gamma2`
     `compared`: the asymptotic variance by two methods, side by side.
 `finite_p`
@@ -20,9 +21,9 @@ all topics of the paper; every other module or package is one topic.
 `plasticity`
     `yielding_oscillator`: the example of a structure in an earthquake.
 `errata`, `hard_cases`
-    What is wrong in the paper, and cases in which methods might fail, each with its evidence.
+    What is wrong in the paper, each entry with evidence; and cases in which methods might fail.
 `paper_values`
     `paper_values`: the numbers that the text of the paper quotes, spelt as they stand there.
 `speed_against_error`
-    Work-precision diagrams.
+    Work-precision diagrams: the errors of methods against the time that they take.
 """

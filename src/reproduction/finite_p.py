@@ -51,12 +51,12 @@ def check_stated_errors(p: np.ndarray, off: np.ndarray, allowed: np.ndarray) -> 
     ----------
     p : numpy.ndarray
     off, allowed : numpy.ndarray
-        Distances to the exact values and what they may be, over (formula, p, horizon).
+        Distances to the exact values, and the largest allowed ones, over (formula, p, horizon).
 
     Raises
     ------
     CheckError
-        Naming the formula and the first such p.
+        If one is farther; the message names the formula and the first such p.
     """
     for name, bad in zip(FORMULAS, off > allowed, strict=True):
         if name != ASYMPTOTIC and bad.any():
@@ -82,7 +82,7 @@ def powers_of_p(
     Returns
     -------
     slopes, deviations : list of float
-        The powers, and by how much those between neighbouring p differ from them at most.
+        The powers, and the largest deviations from them of the powers between neighbouring p.
 
     Raises
     ------

@@ -27,7 +27,7 @@ def compared(name: str, scene: Scene, solved: Mapping, sampled: Mapping) -> tupl
     Returns
     -------
     plain, cells : dict
-        A table's row to compute with and the cells to read, without those that name the scene.
+        A table's row of numbers, and its cells of text without those that name the scene.
 
     Raises
     ------

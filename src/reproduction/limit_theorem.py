@@ -1,8 +1,9 @@
-"""The functional central limit theorem (Theorem thm3) on samples: distances between laws.
+"""The functional central limit theorem, Theorem 6 of the paper, on samples.
 
 Xi_p(t) = p^(-1/2) int_0^(p t) g tends to gamma W on [0, 1] as p grows. Hence Xi_p(1)/gamma tends to
-a standard normal variable and max_{t <= 1} |Xi_p(t)|/gamma to the maximum of |W|, whose law is
-1 - W_star (eq. defFexplicit).
+a standard normal variable and max_{t <= 1} |Xi_p(t)|/gamma to the maximum of |W|, whose
+distribution function is 1 - W_star, eq. (34) of the paper. The distances between the laws of
+samples and these limits are measured here.
 """
 
 from collections.abc import Callable
@@ -77,11 +78,11 @@ def kolmogorov_distance(sample: ArrayLike, law: Callable) -> float:
 
 
 def sampling_bound(count: int, probability: float) -> float:
-    """Bound that a sample's Kolmogorov distance to its own law exceeds by chance.
+    """Bound a sample's Kolmogorov distance to its own law, but for a given probability.
 
-    That of Dvoretzky, Kiefer and Wolfowitz with Massart's constant (Ann. Probab. 18, 1990): it
-    holds for every law and every count. By the triangle inequality it also bounds by how much
-    the distance of the sample to another law is off that of its law.
+    This is the bound of Dvoretzky, Kiefer and Wolfowitz with Massart's constant (Ann. Probab. 18,
+    1990). It holds for every law and every count. By the triangle inequality it also bounds the
+    difference between the distances of the sample and of its law to a third law.
 
     Parameters
     ----------
@@ -114,7 +115,7 @@ def distance_to_limit(
     Returns
     -------
     distance, sensitivity : float
-        The sensitivity is what the error of gamma^2 changes in the distance.
+        The sensitivity is the change of the distance by the error of gamma^2.
     """
     distance, less, more = (
         kolmogorov_distance(sample / np.sqrt(gamma2 + shift), law)
@@ -144,9 +145,10 @@ def allowed_distance(p: ArrayLike, distance: ArrayLike, error: ArrayLike) -> np.
     """Extrapolate an upper bound of the distance at the largest p from the smaller ones.
 
     A distance of order p^(-1/2) is p^(-1/2) (c + c'/p^(1/2) + ...). Let c(p) be p^(1/2) times the
-    distance. The bound takes the larger of two values for c at the largest p: the largest c at the
-    smaller ones, and what the straight line in p^(-1/2) through the last two of these gives. It
-    holds if the errors do and c(p) falls, rises ever more slowly, or follows the two terms above.
+    distance. For c at the largest p the bound takes the larger of two values: the largest c(p) at
+    the smaller p, and the extrapolation of the last two of these by a straight line in p^(-1/2).
+    The bound holds if the errors hold and c(p) falls, rises ever more slowly, or follows the two
+    terms above.
 
     Parameters
     ----------
@@ -158,7 +160,7 @@ def allowed_distance(p: ArrayLike, distance: ArrayLike, error: ArrayLike) -> np.
     Returns
     -------
     numpy.ndarray, shape (...)
-        What the measured distance at the largest p stays below.
+        The bound of the measured distance at the largest p.
     """
     p, distance, error = (np.asarray(value, dtype=float) for value in (p, distance, error))
     root = np.sqrt(p)

@@ -1,7 +1,7 @@
 """The numbers that the text of the paper quotes, spelt as they stand there.
 
-`paper_values` collects them; each other function is one section of the paper. All numbers are
-strings, of which those in scientific notation and the formulas are Typst mathematics.
+`paper_values` collects them; each other public function does so for one section of the paper. All
+numbers are strings. Formulas and numbers in scientific notation are Typst mathematics.
 """
 
 import json
@@ -18,7 +18,7 @@ from reproduction.plasticity import relaxation_time
 from reproduction.rendering.printed import printed_values
 from reproduction.rendering.tables import penalization, scientific
 
-SIGNIFICANT = 3.0  # standard errors from which on the text calls the formula too low
+SIGNIFICANT = 3.0  # standard errors; the text calls the formula too low if it is lower by more
 
 CONSTANTS = ("diffusion", "kappa", "dispersion", "dipole", "kappa3", "h")
 
@@ -118,7 +118,7 @@ def crossing(check: xr.Dataset, section: Mapping) -> dict:
 
 
 def finite_p(contained: xr.Dataset, formulas: xr.Dataset, section: Mapping) -> dict:
-    """Return constants and errors of the corrected formulas, and how often bands hold curves."""
+    """Return constants and errors of the corrected formulas, and how often bands cover curves."""
     constants_error = max(float(formulas[f"{name}_error"]) for name in CONSTANTS)
     percent = {
         name: f"{100 * float(contained[name]):.1f}"
@@ -227,7 +227,7 @@ def theorems(drift_condition: xr.Dataset, section: Mapping) -> dict:
 
 
 def ergodicity(found: xr.Dataset, section: Mapping, scenes: Mapping) -> dict:
-    """Return how well rates agree, and the scenes in which infinity is slower than the gap."""
+    """Return how well rates agree, and the scenes that forget a far start slower than the gap."""
     deviation = np.abs(found["rate"] - found["gap"]) / (found["rate_error"] + found["gap_error"])
     slower = found["far"] + found["far_error"] < found["gap"] - found["gap_error"]
     return {

@@ -1,7 +1,7 @@
 """How fast a penalized scene approaches its non-smooth limit as n grows, on paths and in law.
 
-Both are driven by the same Brownian path. The limit is simulated with the same steps, so that
-what the steps change in both cancels in the difference.
+The penalized scene and the limit are driven by the same Brownian path and simulated with the same
+steps, so that errors of the steps that both share cancel in the difference.
 """
 
 import math
@@ -25,8 +25,8 @@ from nonsmooth.scenes.symbols import STATE_VARIABLES
 def contact_time(scene: Scene) -> float:
     """Time scale of the penalty, which steps must resolve.
 
-    An elastic contact takes n^(-1/2), a relaxation 1/n. A Brownian velocity spends n^(-2) within
-    |y| < 1/n.
+    An elastic contact takes a time of the order n^(-1/2), a relaxation 1/n. A Brownian velocity
+    crosses |y| < 1/n in a time of the order n^(-2).
     """
     if scene.mechanics.in_potential:
         return scene.n**-0.5
@@ -47,7 +47,7 @@ def largest_distances(
     horizon : float
         T, "1".
     sampling : Sampling
-        Its precision is not used: the differences are small, and double precision is.
+        Its precision is ignored: double precision is used, because the differences are small.
 
     Returns
     -------
@@ -118,9 +118,9 @@ def slope(
     Returns
     -------
     slope, half_width : float
-        With the half width of an interval by the delta method (the error of the logarithm is
-        the relative one). If the points scatter about the line more than their errors explain, as
-        they do where a further order counts, the scatter takes the place of the errors, with
+        The half width is that of a confidence interval by the delta method: the error of the
+        logarithm is the relative error. If the points scatter about the line more than their errors
+        explain, because a further order matters, the scatter takes the place of the errors, with
         Student's factor.
 
     Raises
@@ -137,7 +137,7 @@ def slope(
         )
     x, y = np.log(n[kept]), np.log(value[kept])
     weight = (value / np.maximum(error, 1e-12 * value))[kept] ** 2
-    # No relative error counts as less than a tenth of the typical one.
+    # A relative error below a tenth of the typical one counts as that tenth.
     weight = np.minimum(weight, 100 * np.median(weight))
     centre = np.average(x, weights=weight)
     spread = np.sum(weight * (x - centre) ** 2)

@@ -14,7 +14,7 @@ outputflags:
 
 
 def settings(section, *keys, **renamed):
-    """Look up the keys of a section of the configuration: only what a rule uses reruns it.
+    """Look up keys of a section of the configuration; a rule reruns only if one of these changes.
 
     The section may contain wildcards. A parameter with another name than its key is given as
     name="key".
@@ -49,7 +49,7 @@ def complete(job):
     if job.script is None:
         return
     job.message = job.message or job.docstring
-    # snakemake sets these three only where a rule itself has an input, a log and a benchmark
+    # snakemake sets these three only if the rule itself declares an input, a log and a benchmark
     job.input_modifier = job.log_modifier = job.benchmark_modifier = job.output_modifier
     job.set_input(modules=sources(f"workflow/{job.script.removeprefix('../')}"))
     name = Path(job.output[0].removeprefix(f"{config['outputs']['results']}/")).with_suffix("")

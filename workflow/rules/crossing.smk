@@ -34,7 +34,7 @@ rule crossing_gamma2:
     """Halve the time step in gamma^2"""
     output:
         "<results>/crossing/gamma2.nc",
-    # it compiles a kernel of its own, while another core compiles that of the shards
+    # first, because it compiles a kernel of its own while another core compiles that of the shards
     priority: 200
     params:
         **settings("crossing", "scene", "step"),

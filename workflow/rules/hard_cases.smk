@@ -1,5 +1,5 @@
-# Nasty cases, in which every method must return an error that holds, or a message. Not part of the
-# paper; a target of its own.
+# Hard cases, in which every method must return a value with an error that holds, or a message. They
+# are not part of the paper but a target of their own.
 
 
 rule examine_hard_cases:

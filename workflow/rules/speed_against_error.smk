@@ -1,12 +1,12 @@
-# Work-precision diagrams: each method's error against its time, measured on the spot.
+# Work-precision diagrams: each method's error against its time, measured on this machine.
 # Not part of the default run: `snakemake --cores 1 speed_against_error`. A job takes all cores, so
-# that nothing runs beside it.
+# that nothing else runs at the same time.
 
 SPEED = config["speed_against_error"]
-# what is drawn against what
+# what each diagram draws: y against x
 AXES = {diagram: {"x": "seconds", "y": "error"} for diagram in SPEED["diagrams"]}
 AXES |= {"pathwise": {"x": "size", "y": "error"}, "cost": {"x": "size", "y": "seconds"}}
-# the peers' sources, and the python of their environment if there is one
+# sources of the other libraries' programs, and the python of their environment if there is one
 PEERS = sorted(map(str, Path("benchmarks/peers").glob("*.py")))
 PEERS_PYTHON = SPEED["peers"] if Path(SPEED["peers"]).exists() else None
 

@@ -77,7 +77,7 @@ def low_entry():
     r"$O(1/\tau)$; exponential that of $v(0, \tau) - \gamma^2 \tau$ to its constant",
 )
 def convergence_in_time():
-    """Predict the distance at tau = 80 from those at 20 and 40 by both laws."""
+    """Predict the distance at tau = 80 from those at 20 and 40: exponential, and like 1/tau."""
     scene = Scene("friction")
     times = np.array([20.0, 40.0, 80.0])
     gamma2 = friction_variance(scene.n)[0]
@@ -95,7 +95,7 @@ def convergence_in_time():
     r"$w_g^n(y, \tau) \sim \tau \int g m_n$",
 )
 def mean_of_the_integral():
-    """Compare the increase from tau = 25 to 50 by both laws with the paper's own scheme."""
+    """Compare the increase from tau = 25 to 50 by both formulas with the paper's own scheme."""
     scene = Scene("friction", n=5, observable="y**2")
     mean = eigenfunctions.mean(scene)
     (first, second), _, error, _ = moments_with_error(scene, [25.0, 50.0], *_GRID, 0.05)
@@ -110,9 +110,9 @@ def mean_of_the_integral():
     r"$E_y[(\int g(Y_s) - E_y[g(Y_s)] ds)^2]$",
 )
 def inner_expectation():
-    """Put the stationary mean 0 inside, and E_y.
+    """Subtract the stationary mean, which is 0, and then E_y.
 
-    The reference is the equation for v (label eq:PDEv) by the paper's scheme.
+    The reference is the equation for v, eq. (37) of the paper, solved by the paper's scheme.
     """
     scene = Scene("friction", n=5, start={"y": 1.0})
     w, v = eigenfunctions.moments(scene, [5.0], _DEGREE)

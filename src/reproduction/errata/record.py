@@ -16,9 +16,10 @@ class Evidence:
     error : float
         Error of the comparison: of the reference, of the quadratures, or of the last digit.
     relation : {"equal", "at least", "at most"}
-        What a right value is to the reference.
+        How a right value compares with the reference.
     kind : {"numerical", "symbolic", "consistency"}
-        A second computation; algebra without rounding; a law that any right formula obeys.
+        Where the reference is from: a second computation, algebra without rounding, or a law that
+        any right formula obeys.
     """
 
     quantity: str

@@ -101,7 +101,7 @@ def petite_sets():
     covariance = np.array([[1, 1 / 2], [1 / 2, 1 / 3]])
     precision = np.linalg.inv(covariance)
     height = 1 / (2 * np.pi * math.sqrt(np.linalg.det(covariance)))
-    # the least C_T for which the lower bound of the density (label eq:boundDelarueMenozzi) holds
+    # the least C_T for which the lower bound of the density, eq. (16) of the paper, holds
     C_T = max(scipy.linalg.eigvalsh(precision)[-1] / 2, 1 / height)
     c_1 = T ** (-(d**2) / 2) / C_T
 

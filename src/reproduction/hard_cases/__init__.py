@@ -1,7 +1,7 @@
 """Hard cases: what the public functions return where a method is likely to fail.
 
-A result may be refused with a message, or come with a stated error that is larger than the true
-one. Anything else is wrong: a value that is off by more than it says, or is not a number.
+A method may refuse a case with a message, or return a result whose stated error is at least the
+true one. Anything else is wrong: a value that is off by more than it says, or is not a number.
 
 - `reproduction.hard_cases.record` : `Case`, `Result`, `Outcome`, and `examine`, which runs a case
   and judges it.

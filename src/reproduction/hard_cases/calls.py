@@ -1,4 +1,4 @@
-"""What is called in the cases.
+"""The functions that the cases call.
 
 Each function returns the `evaluate` of a `Case`. A scene is passed as a function that builds it,
 because building it may be refused, too.
@@ -25,7 +25,7 @@ Evaluate = Callable[[int | None], Result]
 
 
 def gamma2(scene: Build, deviations: float = 1.0, **options) -> Evaluate:
-    """Call `asymptotic_variance`; the error counts `deviations` times."""
+    """Call `asymptotic_variance`; its error is multiplied by `deviations`."""
 
     def evaluate(paths):
         found = asymptotic_variance(scene(), **options)
@@ -60,10 +60,10 @@ def simulated(
 
 
 def accumulated(scene: Build, step: float) -> Evaluate:
-    """Simulate the mean of g with 32 paths of 1600 steps for each of the usual paths.
+    """Simulate the mean of g with 32 very long paths: 1600 steps for each of the usual paths.
 
-    With 20000 paths these are 3.2e7 steps, more than the 2^24 after which a sum of similar numbers
-    in single precision does not change any more.
+    If 20000 paths are usual, these are 3.2e7 steps. A sum of similar numbers in single precision
+    stops changing after about 2^24 of them.
     """
 
     def evaluate(paths):

@@ -1,4 +1,4 @@
-"""Hard cases by the observable and the start, and what is not a number."""
+"""Hard cases: extreme observables and starts, and parameters that are not a number."""
 
 import math
 
@@ -24,12 +24,12 @@ def _quartic():
 
 
 def _variance_from_far():
-    """Take the friction as 1 until t = 2: y, down from 50, is then 8 deviations away from 0."""
+    """Take the friction as 1 until t = 2, when y, from 50, is still 8 deviations above 0."""
     return integrated_ornstein_uhlenbeck(1.0, 2.0)
 
 
 def _crossed_from_far():
-    """P(int y >= 40) at t = 1.6, a normal law: y, from 50, stays above 8 and the friction is 1."""
+    """P(int y >= 40) at t = 1.6 by a normal law: y, from 50, is above 8, so the friction is 1."""
     t = 1.6
     mean = -51 * math.expm1(-t) - t
     deviation = math.sqrt(integrated_ornstein_uhlenbeck(1.0, t).value)

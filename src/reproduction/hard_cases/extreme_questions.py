@@ -1,4 +1,4 @@
-"""Hard cases by what is asked: thresholds, horizons, the paper's grids, long sums."""
+"""Hard cases: extreme thresholds and horizons, unsuitable grids, long sums."""
 
 from reproduction.hard_cases.calls import (
     accumulated,

@@ -1,4 +1,4 @@
-"""Hard cases by the scene or the step: stiffness, damping, ringing ground, impacts, wells."""
+"""Hard cases: extreme scenes and steps, such as stiffness, damping, ringing ground, wells."""
 
 import math
 

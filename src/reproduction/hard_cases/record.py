@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from nonsmooth.errors import AssumptionWarning, NonsmoothError
 
-DEVIATIONS = 5.0  # standard errors within which a sampled result lies; beyond by chance: 6e-7
+DEVIATIONS = 5.0  # standard errors; a sampled result is farther off with a probability of 6e-7
 
 MET, REFUSED, WARNED, WRONG = "met", "refused", "warned", "WRONG"
 
@@ -49,13 +49,14 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a case.
+    """The outcome of a case.
 
     Attributes
     ----------
     verdict : {"met", "refused", "warned", "WRONG"}
-        Within the stated error; refused with a message; with a warning, and within the stated
-        error where there is a reference; anything else.
+        "met" if the value is within its stated error; "refused" if there is a message instead of a
+        value; "warned" if there is a warning, and the value is within its stated error where a
+        reference is known; "WRONG" in any other case.
     value, error, reference, deviation : float
         Of the result, and its distance to the reference; not a number where there is none.
     message : str

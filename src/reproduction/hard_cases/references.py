@@ -79,7 +79,8 @@ def gamma2_by_nested_quadrature(g: Callable[[float], float]) -> Result:
 def integrated_ornstein_uhlenbeck(rate: float, time: float) -> Result:
     """Return the variance of the integral of Y, dY = -rate Y dt + dW.
 
-    It is that of dry friction as long as Y stays in the layer |y| < 1/n or far outside of it.
+    Under dry friction it is the same as long as Y stays in the layer |y| < 1/n, where the penalty
+    is linear, or far outside of it, where the force is constant.
     """
     with mpmath.workdps(40):
         z = mpmath.mpf(rate) * time

@@ -1,8 +1,8 @@
-"""How a script of the workflow runs: it reads artifacts, computes, and writes what is complete.
+"""How a script of the workflow runs: it reads artifacts, computes, and writes its output.
 
 `job`
-    `produce` reads the artifacts that a script needs and writes its own; `job` says in one line
-    what went wrong if the user can mend it.
+    `produce` reads the artifacts that a script needs and writes its own; `job` prints an error that
+    the user can mend as one line.
 `artifact`
     netCDF files with units, errors and provenance: `dataset`, `write`, `read`, `provenance`.
 `files`

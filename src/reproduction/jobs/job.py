@@ -1,4 +1,4 @@
-"""How a script runs as a job: one line on what the user can mend, and a traceback on the rest."""
+"""How a script runs as a job: errors that the user can mend are one line, others a traceback."""
 
 import sys
 import traceback

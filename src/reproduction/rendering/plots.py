@@ -57,7 +57,7 @@ def draw(plot: Callable, task: Task) -> None:
     with job(task.log[0]), mpl.rc_context(STYLE):
         figure = plot(**inputs(task), **dict(task.params.items()))
         figure.draw_without_rendering()
-        figure.set_layout_engine("none")  # the layout is found once, for all files
+        figure.set_layout_engine("none")  # the layout found above serves all files
         for path in map(Path, task.output):
             metadata = {"CreationDate": None} if path.suffix == ".pdf" else {"Software": None}
             with whole(path) as partial:
@@ -75,7 +75,7 @@ def scene_panels(
     height : float
         Of the figure, in text widths.
     xlabel, ylabel : str
-        Of the outer panels; the second stands below the name of the model.
+        Labels of the outer panels; the second one stands below the name of the model.
     **options
         Of `matplotlib.pyplot.subplots`.
 

@@ -1,4 +1,4 @@
-"""Tables in three forms from one content: CSV to compute with, LaTeX and Typst to read.
+"""Tables in three forms from one content: CSV for computing, LaTeX and Typst for reading.
 
 Cells are LaTeX, with mathematics between dollar signs.
 """
@@ -22,8 +22,8 @@ def typeset(build: Callable, task: Task) -> None:
     Parameters
     ----------
     build : callable
-        Takes the task's input artifacts and parameters by name; returns the table to compute
-        with and the table to read, two pandas.DataFrame.
+        Takes the task's input artifacts and parameters by name; returns two pandas.DataFrame, the
+        table of plain numbers for the CSV file and the table of cells for reading.
     task : Task
     """
     with job(task.log[0]):

@@ -1,4 +1,4 @@
-"""Speed against error: what the methods of the library and of others take for their accuracy.
+"""Speed against error: how long methods take, those of the library and others, for an accuracy.
 
 - `work_precision.measured`: runs methods at several sizes and returns times and errors
 - `work_precision.peer`: measures programs that run in another environment

@@ -14,7 +14,10 @@ from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 @kernel
 def _follow(s, data, increments, row, kept):
-    """Advance the lanes step by step, unmerged, so that the state is known after each."""
+    """Advance the lanes by whole steps, so that the state is known after each.
+
+    The time loop of the library joins the end of a step with the beginning of the next.
+    """
     lanes = increments.shape[1]
     for k in range(len(increments)):
         strang.flow(s, data, True, False, lanes)
@@ -25,7 +28,7 @@ def _follow(s, data, increments, row, kept):
 
 
 class BrownianPaths:
-    """Paths of one noise, on which a scene can be followed with any dyadic step.
+    """Brownian paths on which a scene can be followed with any step T / 2^k.
 
     Parameters
     ----------
@@ -58,7 +61,7 @@ class BrownianPaths:
         return registry.coefficients(self.scene, "strang", self.horizon / 2**level, "float64")
 
     def _increments(self, level):
-        """Gaussian increments of the steps: pairs of finer ones, joined."""
+        """Gaussian increments of the steps, each made of those of two finer steps."""
         if level not in self._known:
             decay = float(self._coefficients(level + 1).transition[0])
             finer = self._increments(level + 1)

@@ -1,7 +1,7 @@
-"""Work-precision diagrams: what methods take and how far they are from a reference.
+"""Work-precision diagrams: how long methods take and how far they are from a reference.
 
-Everything is measured in one process. Each case has its turn in each round, so that a machine that
-slows down slows down all of them. The first round, which compiles, is not counted.
+Everything is measured in one process. Each case is run once in each round, so that a slow phase of
+the machine affects all of them. The first round, which compiles, is not counted.
 """
 
 import json
@@ -29,7 +29,7 @@ class Case:
     panel, method : str
         Problem and method; cases that share both are one curve.
     size : float
-        What is varied along the curve: nodes, steps, tolerance, ...
+        The number that varies along the curve, such as nodes, steps or a tolerance.
     run : callable
         Takes a seed, returns the value and the seconds it took; see `timed`.
     """
@@ -41,12 +41,12 @@ class Case:
 
 
 def timed(function: Callable, *arguments: Any, **options: Any) -> Callable:
-    """Turn a function of a seed into a `Case.run` by the clock.
+    """Turn a function of a seed into a `Case.run` that measures its time.
 
     Parameters
     ----------
     function : callable
-        Returns the value, given `arguments`, `options` and, as `seed`, the round's.
+        Takes `arguments`, `options` and, as `seed`, the seed of the round; returns the value.
     """
 
     def run(seed):
@@ -75,7 +75,7 @@ def measured(
     rounds : int
         At least 2. Each has its own seed, 1, 2, ...
     references : dict, optional
-        Panel -> reference value and bound of its error; times only, unless given.
+        Panel -> reference value and bound of its error. Unless given, only times are measured.
 
     Returns
     -------
@@ -166,7 +166,7 @@ def peer(python: str | Path, script: str | Path) -> Iterator[Callable]:
 
 
 def front(seconds: np.ndarray, error: np.ndarray) -> list[int]:
-    """Places of the cases that no other one beats in both, by increasing time."""
+    """Return the indices of cases that no other one beats in time and error, by increasing time."""
     kept, least = [], np.inf
     for k in np.lexsort((error, seconds)):
         if error[k] < least:

@@ -14,10 +14,10 @@ FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wron
 def compare(monte_carlo, asymptotic, gamma2):
     """Bound the bias of the time step and measure the distance to the limit.
 
-    For large p the relative bias of the first-passage times is that of gamma^2, of the opposite
-    sign, and the latter is known precisely. The bias of W that follows from it must be below the
-    largest standard error of W. The bias of W that is measured directly must not be significantly
-    above the standard error at any p, nor contradict the precise one at p >= 10.
+    For large p the relative bias of the first-passage times is minus that of gamma^2, which is
+    known precisely. The bias of W that follows from it must be below the largest standard error of
+    W. The bias of W that is measured directly must not be significantly above the standard error at
+    any p, nor contradict the precise one at p >= 10.
 
     Parameters
     ----------

@@ -17,8 +17,8 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
     Returns
     -------
     xarray.Dataset
-        From an ensemble independent of the shards'. With a scheme of weak order q the bias of
-        step h is the change by halving, divided by 1 - 2^-q.
+        From paths independent of those of the shards. With a scheme of weak order q the bias of the
+        step h is the change by halving it, divided by 1 - 2^-q.
     """
     scene = Scene(**scene)
     sampling = Sampling(step, paths, (seed, f"halving, p = {p}"), threads=threads)

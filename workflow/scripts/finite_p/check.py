@@ -11,7 +11,7 @@ from reproduction.rendering.tables import sorted_by
 
 OUTSIDE = 1e-6  # probability that a simultaneous band misses its curve by chance
 RARELY = 1e-3  # probability that the 95 % bands contain the curves too rarely by chance
-REPLICATES = 10_000  # ensembles that the second is taken from
+REPLICATES = 10_000  # simulated ensembles that tell how rarely that is
 
 
 def containment(monte_carlo, exact, seed):

@@ -14,7 +14,7 @@ from reproduction.limit_theorem import (
     sampling_bound,
 )
 
-FALSE_ALARM = 1e-6  # probability that this check fails although the distances are as they should
+FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 
 LAWS = {
     "final": (normal_law, "Xi_p(1)/gamma to the standard normal law"),

@@ -34,7 +34,7 @@ def measure(scenes, horizon, resolution, longest, paths, weak, level, seed, thre
     horizon : float
         T of the paths.
     resolution, longest : float
-        The step, in units of the penalty's time scale, and at most.
+        The step in units of the penalty's time scale, and the longest step.
     paths : int
     weak : dict
         Horizon, step and paths of the variances.

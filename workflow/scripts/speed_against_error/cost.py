@@ -19,7 +19,7 @@ SIMULATED, SOLVED = "Monte Carlo, Strang", "spectral"
 
 
 def cost(paths, horizons, p, n, names, scenes, step, least, tolerance, paper_scheme, rounds):
-    """Time one thing at a time; what is not varied stays at the first of its values.
+    """Vary one size at a time and measure the time; the others stay at the first of their values.
 
     Parameters
     ----------

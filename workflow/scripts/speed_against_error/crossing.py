@@ -30,7 +30,7 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
     steps : list of float
         Time steps of Monte Carlo.
     paths : list of int
-        At the largest p; as many times more at smaller ones as sqrt(p) is smaller.
+        At the largest p. At smaller ones there are more, in inverse proportion to sqrt(p).
     degrees, contours : list of int
         Polynomial degree and nodes of the contour, of single spectral solutions.
     tolerance : float
@@ -106,9 +106,9 @@ def on_a_line(scene, threshold, horizon, p, decay=18.4, terms=15, averaged=11):
     scene : Scene
     threshold, horizon, p : float
     decay : float
-        A: folding the series costs exp(-A).
+        A: replacing the integral by a series has an error of exp(-A).
     terms, averaged : int
-        Terms of the alternating series, and partial sums more that are averaged.
+        Terms of the alternating series, and the number of further partial sums that are averaged.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def on_a_line(scene, threshold, horizon, p, decay=18.4, terms=15, averaged=11):
     """
     level, time = threshold * np.sqrt(p), p * horizon
     k = np.arange(terms + averaged + 1)
-    # between the usual points, which keeps clear of the real axis
+    # the points lie between the usual ones, so that none is on the real axis
     nodes = (decay / 2 + 1j * np.pi * (k + 0.5)) / time
     values = []
     for degree in (10, 13):

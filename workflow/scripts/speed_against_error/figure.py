@@ -30,10 +30,10 @@ def diagram(measurements, x, y):
     Parameters
     ----------
     measurements : xarray.Dataset
-        From `nonsmooth.work_precision.measured`.
+        From `reproduction.speed_against_error.work_precision.measured`.
     x, y : {"seconds", "error", "size"}
-        What is drawn against what. Of error against time, the curve joins the cases that no other
-        of the method beats in both. An error below its own uncertainty is drawn at that.
+        y is drawn against x. If these are error and time, the curve joins the cases that no other
+        case of the method beats in both. An error below its own uncertainty is drawn at that.
 
     Returns
     -------

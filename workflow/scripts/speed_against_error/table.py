@@ -7,7 +7,7 @@ from reproduction.speed_against_error.work_precision import exponent, front
 
 
 def tabulate(measurements, x, y):
-    """Tabulate all measurements, and what is to be read off them.
+    """Tabulate all measurements, and what they show.
 
     Parameters
     ----------
@@ -17,8 +17,9 @@ def tabulate(measurements, x, y):
     Returns
     -------
     plain, cells : pandas.DataFrame
-        Of error against time, the cells are the cases that no other of the method beats in both,
-        errors no smaller than what is known of them; otherwise the exponent of each curve.
+        For error against time, the cells are the cases that no other case of the method beats in
+        both; errors below their own uncertainty are given as that. Otherwise the cells are the
+        exponents of the curves.
     """
     plain = measurements.to_dataframe().reset_index(drop=True)
     cells = []
