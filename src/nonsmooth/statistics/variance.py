@@ -118,16 +118,17 @@ def _of_velocity(scene, times, tol):
     allowed = np.array([np.full_like(times, np.inf), tol * np.where(times > 0, times, 1.0)])
 
     def error(solutions):
-        coarser, (w, v) = solutions[-2:]
+        coarser, (w, v, rounding) = solutions[-2:]
         # w is the difference of terms as large as the standard deviation, v of E Delta^2 and w^2
         terms = np.array([np.abs(w) + np.sqrt(np.abs(v)), np.abs(v) + w**2])
-        rounding = eigenfunctions.rounding(scene, degrees[len(solutions) - 1])
-        return np.abs(solutions[-1] - coarser) + rounding * terms
+        degree = degrees[len(solutions) - 1]
+        change = np.abs(np.array([w, v]) - coarser[:2])
+        return change + eigenfunctions.rounding(scene, degree) * terms + [0 * v, rounding]
 
     found = until_agreement(
         degrees,
-        lambda degree: np.array(eigenfunctions.moments(scene, times, degree)),
+        lambda degree: np.array(eigenfunctions.moments_with_rounding(scene, times, degree)),
         error,
         lambda _, error: bool(np.all(error <= allowed)),
     )
-    return found.value, found.error
+    return found.value[:2], found.error

@@ -28,3 +28,16 @@ def test_rare_yielding_is_not_taken_for_rest():
     allowed = 3.3 * np.hypot(sample["variance_error"], found["v_error"])
     allowed += np.abs(sample["variance_bias"]) + sample["variance_bias_error"]
     assert np.abs(found["v"] - sample["variance"]) < allowed
+
+
+def test_early_times_where_all_modes_cancel():
+    """Within the layer |y| < 1/n the velocity is an Ornstein-Uhlenbeck process of rate n + C_b.
+
+    By the last time it has left the layer, nine standard deviations away, with probability 1e-20.
+    """
+    times = np.array([1e-9, 1e-8, 1e-7, 1e-6, 1e-5 / 9])
+    found = ns.variance(ns.Scene("friction", n=100), times)
+    z = 101 * times
+    # E Delta^2 = int int Cov = tau^3/3 (1 - 3 z/4 + ...), to 1e-9 relative for z < 1.2e-4
+    exact = times**3 / 3 * (1 - 3 / 4 * z + 7 / 20 * z**2)
+    assert np.all(np.abs(found["v"] - exact) <= found["v_error"] + 1e-9 * exact)
