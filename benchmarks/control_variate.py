@@ -1,4 +1,4 @@
-"""What the control variate buys: standard error times the square root of the time.
+"""What the control variate gains: standard error times the square root of the time.
 
 `python -m benchmarks.control_variate` prints one line per quantity.
 """

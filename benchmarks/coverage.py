@@ -16,10 +16,10 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.statistics.sampled_gamma2 import slopes
 
 FRICTION = ns.Scene("friction", n=100)
-# the restoring force's gamma^2 is the forcing's spectrum at 0, whatever the yield
+# gamma^2 of the whole restoring force is the forcing's spectral density at 0, with or without yield
 BALANCE = ns.Scene("elasto_plastic", n=np.inf, potential="x**2/2", observable="x + y")
 TIMES = (10.0, 30.0, 60.0)
-RARE, RARE_HORIZON, RARE_STEP = 1.24, 1.0, 0.02  # a threshold crossed once in ten thousand
+RARE, RARE_HORIZON, RARE_STEP = 1.24, 1.0, 0.02  # a threshold that one path in 10,000 crosses
 
 
 def within(value, error, truth):
@@ -86,7 +86,7 @@ def coverage(runs, truth_paths=100_000_000):
         hits.setdefault("gamma^2, elasto-plastic, n = inf", []).append(
             of_growth(run, BALANCE, 1.0, 0.02, False)
         )
-        # by a Laplace transform of the crossing problem, known to seven digits
+        # the exact value is known to seven digits by a Laplace transform of the crossing problem
         hits.setdefault("W = 0.16", []).append(of_crossing(run, 0.6, 2.0, 0.1606775, 1_000))
         hits.setdefault(f"W = {rare:.2e}", []).append(
             of_crossing(run, RARE, RARE_HORIZON, rare, 100_000)

@@ -24,8 +24,12 @@ OTHER = ("y + {a}*abs(y)", "y + {a}*sin(y)**2", "y + {a}*cos(2*y)", "y + {a}*y**
 CLASSES = {"odd": (ODD, 40), "other": (OTHER, 24)}
 HORIZONS = np.geomspace(0.01, 100, 25)
 PROBED = (1e-4, 0.05, 0.7)  # probabilities near which a curve is checked
-DEGREE, PERIOD, DECAY, LEAST, MOST = 11, 3.0, 24.0, 1e-13, 1500  # of the reference
-UNCERTAIN = 2e-10  # its error: exp(-DECAY) of periods, rounding and what is left out times exp(8)
+# The reference: polynomial degree; period of the trapezoidal rule in units of the time; its decay
+# over a period, exp(-DECAY); relative size of the terms that are left out; largest number of terms.
+DEGREE, PERIOD, DECAY, LEAST, MOST = 11, 3.0, 24.0, 1e-13, 1500
+# Error of the reference: exp(-DECAY) from the other periods, and rounding and the terms that are
+# left out, which are magnified by exp(DECAY / PERIOD) = exp(8).
+UNCERTAIN = 2e-10
 
 
 def draw(rng, formulas):
@@ -45,7 +49,8 @@ def draw(rng, formulas):
 
 def on_vertical_line(scene, levels, time):
     """Probability at a time by the trapezoidal rule; nan if it takes too many nodes."""
-    # not odd by the letter, for a whole grid: its modes do not come in squares, which lose digits
+    # The tiny constant makes g not odd, so that the symmetry is not used. With it, decay lengths are
+    # square roots of eigenvalues, which have fewer digits.
     whole = replace(scene, observable=f"{scene.observable} + 1e-30")
     transform = LineProblem(whole, *levels).transform(DEGREE, np.array([time]), 12.0)
     step = 2 * np.pi / (PERIOD * time)

@@ -58,7 +58,7 @@ def linear(noise, tol):
 
 
 def yield_balance(rng):
-    """All that resists the forcing of an elasto-plastic oscillator, against sigma^2."""
+    """Elasto-plastic oscillators with g the force that resists the noise, against sigma^2."""
     noise, damping = ns.White(rng.uniform(0.5, 2)), rng.uniform(0.3, 3)
     scene = ns.Scene("elasto_plastic", noise, stiffness(rng), damping, formula(rng, POTENTIALS))
     g = f"{sympy.diff(scene.potential_expression, x)} + {damping!r}*y"
@@ -66,7 +66,7 @@ def yield_balance(rng):
 
 
 def friction_balance(rng):
-    """All that resists the forcing of dry friction, against the forcing's own gamma^2."""
+    """Friction with g the force that resists the forcing, against gamma^2 of the forcing itself."""
     noise, damping = ns.Langevin(formula(rng, FORCINGS), rng.uniform(0.7, 1.5)), rng.uniform(0.3, 3)
     n = 10 ** rng.uniform(0, 4)
     g = f"{damping!r}*y + max(min({n!r}*y, 1), -1)"

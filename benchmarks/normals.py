@@ -1,7 +1,7 @@
 """A thousand million normal numbers: moments, law, tails, correlations.
 
-`python benchmarks/normals.py` prints each statistic in standard errors of what it is for
-independent normal numbers; the largest of about 60 should stay below 4.
+`python -m benchmarks.normals` prints by how many standard errors each statistic differs from its
+value for independent normal numbers; the largest of the 30 should stay below 4.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
-"""The same simulation by peers: Euler-Maruyama of dry friction, int y and its maximum.
+"""The same simulation by other packages: Euler-Maruyama of dry friction, int y and its maximum.
 
-Runs in the peers' own environment on one core: `python peer_loops.py <peer>` prints nanoseconds
+It runs in the peers' own environment on one core. `python peer_loops.py <peer>` prints nanoseconds
 per path and step. Each peer gets the number of paths that suits it best.
 """
 

@@ -1,6 +1,6 @@
-"""Single against double precision on the same noise: no published digit changes.
+"""Single against double precision on the same noise: whether a published digit changes.
 
-`python -m benchmarks.precision` prints the differences in units of the standard error.
+`python -m benchmarks.precision` prints the differences, also in units of the standard error.
 """
 
 import numpy as np

@@ -1,12 +1,12 @@
-"""What a tolerance costs: random requests against the best choice in hindsight.
+"""What a tolerance costs: random requests, and the best way to answer them in hindsight.
 
 `python -m benchmarks.requests` makes 200 requests, prints a table by quantity and writes every
 request with all its alternatives to results/requests.csv; arguments choose quantities by their
 first words, and a number divides the counts.
 
-Times are seconds of one core (process time), caches of scenes emptied and kernels compiled
-before; those below 0.2 s are the less of two. A choice of Monte Carlo counts as right if it is so
-with four seeds: a hundredth of the paths that are needed is right in one case out of three.
+Times are seconds of one core (process time). Before each run the caches of scenes are emptied and
+kernels are compiled; of runs below 0.2 s the faster of two counts. A Monte Carlo run counts as
+right if it is so with four seeds, because with far too few paths one run is often right by chance.
 """
 
 import csv
@@ -53,17 +53,18 @@ COLUMNS = [
     "error/tol",
 ]
 SHORT, REPEATS = 0.2, 2  # seconds of runs that are repeated, and how often they are run
-OVERHEAD = 0.05  # seconds that are added to both times: less is nobody's wait
-LIMIT = 3.0
-LOOSER = (100.0, 10.0)  # times the tolerance: the cheaper resolutions
-LOOSEST = 0.3
+OVERHEAD = 0.05  # seconds that are added to both times of a ratio: shorter times do not matter
+LIMIT = 3.0  # ratios above it are counted
+LOOSER = (100.0, 10.0)  # times the tolerance: what the same function is asked for, too
+LOOSEST = 0.3  # largest relative tolerance that is asked for
 STEPS = (1.0, 0.5, 0.25, 0.125)  # of plain Monte Carlo, times the coarse one
 GROWTH_TIMES = (10.0, 60.0, 110.0)
 SAMPLED, SEEDS = "monte_carlo", (0, 1, 2, 3)
-SPREAD = {"gamma^2": 2.4, "variance": 2.0}  # variance of the estimates times paths, relative
+# relative variance of the estimates, times the number of paths
+SPREAD = {"gamma^2": 2.4, "variance": 2.0}
 POTENTIALS = ("x**2/2", "x**2", "x**2/2 + 0.3*cos(2*x)", "x**4/4 + x**2/2")
-FINER = 10.0  # of references that are grids
-RESOLVED = 2.0  # of references that are sampled
+FINER = 10.0  # tolerance of the request over that of its reference on grids
+RESOLVED = 2.0  # the same of references by Monte Carlo
 
 
 @dataclass(frozen=True)
@@ -76,16 +77,16 @@ class Request:
     given: dict = field(default_factory=dict)
 
     def ask(self, tol=None, seed=0, **options):
-        """Ask the library for values and the method; to another tolerance or so, if given."""
+        """Ask the library for values and the method, to another tolerance if one is given."""
         return ASKED[self.quantity](self, tol or self.tol, seed, **options)
 
     @functools.cached_property
     def reference(self):
-        """Look up what it is judged by, and the part of the tolerance to which that is known."""
+        """Find the reference values, and the part of the tolerance up to which they are known."""
         return QUANTITIES[self.quantity].reference(self)
 
     def afresh(self):
-        """Make the same request of a scene of its own, for which nothing has been prepared."""
+        """Make the same request with a new scene object, for which nothing has been cached."""
         other = replace(self, scene=replace(self.scene))
         other.__dict__["reference"] = self.reference
         return other
@@ -93,7 +94,7 @@ class Request:
 
 @dataclass(frozen=True)
 class Quantity:
-    """How requests are drawn, judged, and answered otherwise.
+    """How requests are drawn and judged, and the other ways to answer them.
 
     Attributes
     ----------
@@ -106,11 +107,11 @@ class Quantity:
     distance : callable
         Takes a Request, values and reference, returns the error that `tol` bounds.
     stated : dict
-        Name -> function of a Request that yields runs, from the cheapest to the dearest, whose
-        results come with their error. A run takes a seed and returns the values and the method.
+        Maps names to functions of a Request that yield runs, from the cheapest to the dearest, of
+        methods that state their error. A run takes a seed and returns the values and the method.
     bare : dict
-        The same, of runs that do not know their error; they return None for the values where the
-        sample is too small for the tolerance.
+        The same for methods that do not know their error. They return None for the values where
+        the sample is too small for the tolerance.
     """
 
     count: int
@@ -175,7 +176,7 @@ def some_growth(rng):
 
 
 def some_variance(rng):
-    """Draw a request for v(0, tau), whose tolerance goes with the size of int g."""
+    """Draw a request for v(0, tau), whose tolerance is relative to the size of int g."""
     scene = random_scene(rng, variables=pick(rng, ((1,), (2,), (3, 4))))
     first = log_uniform(rng, 0.5, 5)
     times = np.round(np.geomspace(first, first * log_uniform(rng, 1.5, 20), 4), 3)
@@ -259,7 +260,7 @@ def asked_density(request, tol, _seed):
     found = ns.invariant_density(request.scene, tol, request.given["points"])
     names = sorted(name for name in found.data_vars if not name.endswith("_error"))
     largest = [float(found[name].max()) for name in names]
-    # relative to the largest value of each
+    # each density relative to its largest value
     values = [found[name].values.ravel() / top for name, top in zip(names, largest, strict=True)]
     return np.concatenate([*values, np.log(largest)]), "grids"
 
@@ -298,20 +299,20 @@ def by(method):
 
 
 def least_sampled(request):
-    """Return the tolerance below which a sample takes minutes, and blocks of it are not stopped."""
+    """Return the tolerance below which sampling takes minutes and could not be stopped in time."""
     if request.quantity == "crossing":
         return 3e-4
     return 1e-3 * (gamma_scale(request.scene) if request.quantity == "variance" else 1.0)
 
 
 def by_sampling(request):
-    """Sample."""
+    """Ask for Monte Carlo, if this does not take too long."""
     if request.tol >= least_sampled(request):
         yield lambda seed: request.ask(seed=seed, method=SAMPLED)
 
 
 def looser(**options):
-    """Ask for less."""
+    """Ask for larger tolerances."""
 
     def runs(request):
         for factor in LOOSER:
@@ -384,7 +385,7 @@ def plain_variance(request):
 
 
 def plain_crossing(request):
-    """Sample crossing probabilities in the same way; the number of paths knows W."""
+    """Sample crossing probabilities in the same way; the true W tells the number of paths."""
     scene, tol = request.scene, request.tol
 
     def run(share, seed):
@@ -406,7 +407,7 @@ def plain_paths(deviation, tol):
 
 
 def asymptotic(request):
-    """Take the limit of large p, which does not know its distance to W."""
+    """Take the limit of large p, which does not state its error."""
 
     def run(seed):
         found = ns.crossing_probability(request.scene, **request.given, method="asymptotic")
@@ -461,7 +462,7 @@ def gap_on(request, grid):
 
 
 def more_resolved(request, factors=(FINER, RESOLVED), **options):
-    """Ask the same function for a tenth, or if it refuses for less."""
+    """Ask the same function for a tenth of the tolerance or, if it refuses, for half of it."""
     for factor in factors:
         try:
             return request.ask(request.tol / factor, seed=99, **options)[0], 1 / factor
@@ -471,12 +472,12 @@ def more_resolved(request, factors=(FINER, RESOLVED), **options):
 
 
 def sampled(request):
-    """Sample with other random numbers, to half."""
+    """Sample with other random numbers, to half of the tolerance."""
     return more_resolved(request, (RESOLVED,), method="monte_carlo")
 
 
 def true_growth(request):
-    """Take another method for one and three variables."""
+    """Take another method if there are one, three or four variables."""
     scene = request.scene
     many = scene.dimension
     if many == 1:
@@ -489,13 +490,13 @@ def true_growth(request):
         except ToleranceError as error:
             print(request, error, file=sys.stderr)
     if scene.model == "elasto_plastic" and scene.observable == "y":
-        # differs by the bounded displacement, and is sampled faster
+        # the integrals differ by the bounded displacement, and this one is sampled faster
         scene = replace(scene, observable="plastic_strain_rate")
     return sampled(replace(request, scene=scene))
 
 
 def true_variance(request):
-    """Resolve more, by the same method or by Monte Carlo."""
+    """Resolve more finely, by the same method or by Monte Carlo."""
     scene = request.scene
     if scene.dimension == 1:
         return moments_on_degree(request, 28), 0.0
@@ -616,7 +617,7 @@ QUANTITIES = {
 
 
 def empty_caches():
-    """Forget what has been computed of scenes; compiled formulas stay."""
+    """Forget what has been computed for scenes; compiled formulas stay."""
     for kept in (
         quadrature.solved,
         milne.layer_constants,
@@ -627,7 +628,7 @@ def empty_caches():
 
 
 class Dearer(Exception):
-    """A run has taken longer than it may."""
+    """Raised where a run has taken longer than it may."""
 
 
 def stop(*_):
@@ -636,7 +637,7 @@ def stop(*_):
 
 
 def timed(run, most=math.inf):
-    """Return the seconds of one core, and the result: None if refused, or dearer than `most`."""
+    """Return seconds of one core, and the result: None if it was refused or took over `most`."""
     seconds, result = [], None
     signal.signal(signal.SIGPROF, stop)
     while not seconds or (seconds[0] < SHORT and len(seconds) < REPEATS):

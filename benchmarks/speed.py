@@ -1,6 +1,8 @@
-"""Speed of the engine, of raw normal numbers, of a plain loop and of peers, in one run.
+"""Speed of the simulation, of normal numbers alone, of a plain loop and of peers, in one run.
 
-`python benchmarks/speed.py [python of the peers' environment]` prints one table: nanoseconds per
+Peers are other packages that can simulate the same equation.
+
+`python -m benchmarks.speed [python of the peers' environment]` prints one table: nanoseconds per
 path, step and core, the median of interleaved rounds with their spread, and ratios to the plain
 loop. See README.md.
 """
@@ -70,7 +72,7 @@ def timed(run, path_steps):
 
 
 def contestants(threads):
-    """Name -> a function that returns nanoseconds per path-step and core."""
+    """Map names to functions that measure nanoseconds per path, step and core."""
     blocks, steps = 32 * threads, 10_000
 
     def moments(scene, precision="float32", control=False, share=1):
@@ -90,7 +92,7 @@ def contestants(threads):
 
     def crossings():
         paths = blocks * BLOCK
-        # out of reach: every step of every path is done, with its maximum
+        # no path reaches this threshold, so that all steps of all paths are done
         return threads * timed(
             lambda: first_passage_counts(
                 FRICTION,

@@ -2,10 +2,11 @@ r"""
 The asymptotic formula, corrected
 =================================
 
-The limit :math:`W_*(b/\gamma, T)` is off by :math:`O(p^{-1/2})`, because the integral of g does not
-reverse at every instant, as a Brownian motion does. Moving the threshold outwards by
-:math:`\kappa/\sqrt p` makes this :math:`O(1/p)`, and two more orders are known. The errors
-against the exact probability:
+The probability of a crossing tends to :math:`W_*(b/\gamma, T)` as p grows. The limit is off by
+:math:`O(p^{-1/2})`, because a Brownian motion turns back at every instant and the integral of g
+does not. If the threshold is moved outwards by :math:`\kappa/\sqrt p`, the error becomes
+:math:`O(1/p)`. Two further orders are known. The figure shows the errors of these formulas against
+the exact probability.
 """
 
 import matplotlib.pyplot as plt

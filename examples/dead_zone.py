@@ -3,8 +3,8 @@ A model of one's own: a dead zone
 =================================
 
 A mass moves freely between two springs and touches one of them only when its displacement exceeds
-a gap, like a shaft with play in its bearing. The library does not know this model. One object of
-the class ``Model`` is all that it takes.
+a gap, like a shaft with play in its bearing. The library does not know this model. It is made here
+as one object of the class ``Model``; nothing else is needed.
 """
 
 import matplotlib.pyplot as plt

@@ -3,8 +3,8 @@ How likely it has slid too far
 ==============================
 
 A mass under dry friction and white noise slides. With which probability has it been at the
-distance :math:`b\sqrt p` from its start before the time :math:`pT`? Without Monte Carlo, by Monte
-Carlo with its error, and the limit :math:`p \to \infty`.
+distance :math:`b\sqrt p` from its start before the time :math:`pT`? The answer is found without
+Monte Carlo, then by Monte Carlo with its error, and compared with the limit :math:`p \to \infty`.
 """
 
 import matplotlib.pyplot as plt
@@ -28,7 +28,8 @@ axis.legend()
 plt.show()
 
 # %%
-# Every value has its error. That of the deterministic method is an estimate by two resolutions.
+# Every value comes with its error. That of the deterministic method is estimated by comparing two
+# resolutions.
 
 for k in (6, 22, 38):
     print(

@@ -3,8 +3,8 @@ Where an oscillator between obstacles is
 ========================================
 
 The invariant density of displacement and velocity of an oscillator between two walls at
-:math:`x = \pm 1` under white noise. The walls are penalties of stiffness n = 100, so that the mass
-dives into them by about :math:`n^{-1/2}`.
+:math:`x = \pm 1` under white noise. The walls are springs of the stiffness n = 100, so that the
+mass gets into them by about :math:`n^{-1/2}`.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 Paths, and what n does
 ======================
 
-One path of each model with the penalization n = 2, n = 100 and without any, all driven by the same
-noise. A stiffer penalty yields, slips or rebounds more sharply. In the limit the displacement of
+One path of each model with the penalization n = 2, with n = 100, and in the non-smooth limit
+n = inf, all driven by the same noise. With a larger n the model yields, slips or rebounds more
+sharply. In the limit the displacement of
 the first and the third model never leaves [-1, 1]; friction with white noise hardly depends on n.
 """
 

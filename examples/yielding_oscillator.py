@@ -4,7 +4,7 @@ How fast permanent deformation spreads
 
 The plastic deformation of a yielding oscillator is the integral of the plastic strain rate. Over
 long times it spreads like a Brownian motion with the variance :math:`\gamma^2 t`. Here
-:math:`\gamma^2` is found from the Poisson equation, for ever more damping, and compared with the
+:math:`\gamma^2` is found from the Poisson equation, for several dampings, and compared with the
 slope of the variance over many simulated paths.
 """
 
