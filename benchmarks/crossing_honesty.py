@@ -49,8 +49,8 @@ def draw(rng, formulas):
 
 def on_vertical_line(scene, levels, time):
     """Probability at a time by the trapezoidal rule; nan if it takes too many nodes."""
-    # The tiny constant makes g not odd, so that the symmetry is not used. With it, decay lengths are
-    # square roots of eigenvalues, which have fewer digits.
+    # The tiny constant makes g not odd, so that the symmetry is not used. Else decay lengths would
+    # be square roots of eigenvalues, which have fewer digits.
     whole = replace(scene, observable=f"{scene.observable} + 1e-30")
     transform = LineProblem(whole, *levels).transform(DEGREE, np.array([time]), 12.0)
     step = 2 * np.pi / (PERIOD * time)
