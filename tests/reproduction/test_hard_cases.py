@@ -17,6 +17,7 @@ FAST = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", FAST, ids=lambda case: f"{case.title}, {case.method}")
 def test_right_or_refused(case):
     """The stated error holds, or a message says what is wrong; false alarms: 6e-7 each."""

@@ -33,6 +33,7 @@ def errors(threshold, p, scene, formula, horizons=HORIZONS, tol=1e-7):
     return distance
 
 
+@pytest.mark.slow
 class TestOrders:
     """Errors fall like p^(-1/2), p^(-1), p^(-3/2), p^(-2)."""
 
@@ -83,6 +84,7 @@ class TestOrders:
             assert np.log10(last / first) == pytest.approx(power, abs=0.2)
 
 
+@pytest.mark.slow
 class TestSmallScales:
     """Where the expansion does not hold."""
 
@@ -168,6 +170,7 @@ def test_orders_need_constants():
         ns.crossing_probability(FRICTION, 0.6, [1.0], method="corrected", order=4)
 
 
+@pytest.mark.slow
 def test_two_variables():
     """With two variables Monte Carlo agrees, where the plain formula is off by 0.1.
 

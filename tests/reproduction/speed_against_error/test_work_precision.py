@@ -175,6 +175,7 @@ class TestScripts:
         assert float(exact[0]) < 1e-8
         assert float(exact[1]) < 1e-2
 
+    @pytest.mark.slow
     def test_cost(self, script):
         """Ten times the paths take longer."""
         scenes = {"friction": {"scene": {"model": "friction", "n": 100}}}

@@ -43,6 +43,7 @@ def test_crossings_in_flight():
     assert np.allclose(mirrored.probability, found.probability, rtol=0, atol=1e-14)
 
 
+@pytest.mark.slow
 def test_monte_carlo_from_afar():
     """The wall is next to where the flight ends; 4.5 standard errors: false alarm 7e-6."""
     found = deterministic(far(5.0), 2.0, [0.5], tol=1e-5)

@@ -1,12 +1,14 @@
 """Inverted transforms of the first passage: where contours are laid."""
 
 import numpy as np
+import pytest
 
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import contours
 from references import SKEWED
 
 
+@pytest.mark.slow
 def test_contours_end_where_crossings_are_negligible(monkeypatch):
     """Times before the first crossings get at most one contour at each level."""
     begins = []

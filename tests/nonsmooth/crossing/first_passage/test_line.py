@@ -19,6 +19,7 @@ def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
     return ns.crossing_probability(scene, threshold, horizons, p, method="deterministic", tol=tol)
 
 
+@pytest.mark.slow
 class TestDeterministic:
     """First passage against published values, Monte Carlo, and itself in the tails."""
 

@@ -85,6 +85,7 @@ class TestSlab:
         assert far == pytest.approx(plane.first_passage(grid, z, -np.inf, 0.3, 0), abs=1e-6)
 
 
+@pytest.mark.slow
 class TestCrossing:
     """The inverted transform against what does not use it."""
 

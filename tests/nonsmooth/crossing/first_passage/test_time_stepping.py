@@ -9,6 +9,7 @@ from nonsmooth.crossing.first_passage.time_stepping import PlaneProblemInTime
 from references import COLORED_FRICTION, OBSTACLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "levels"),
     [(COLORED_FRICTION, (-0.3, 0.3)), (OBSTACLE, (-0.8, 1.2))],
