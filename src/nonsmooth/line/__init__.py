@@ -6,8 +6,7 @@ Everything that the library asks of such a scene is an integral over m or follow
 eigenfunctions of A, to nearly full precision. The manual page is `docs/methods/line.md`.
 
 - `potential.potential`, `potential.depth`: Phi = -log m, up to a constant.
-- `quadrature.asymptotic_variance`, `quadrature.mean`, `quadrature.density`,
-  `quadrature.poisson_slope`: gamma^2, E g, m, and the derivative of the Poisson solution.
+- `quadrature.asymptotic_variance`, `quadrature.mean`, `quadrature.density`: gamma^2, E g and m.
 - `eigenfunctions.spectrum`, `eigenfunctions.moments`: eigenpairs of -A; mean and variance of
   int_0^t g at finite times.
 - `dry_friction.friction_variance`: gamma^2 for g(y) = y in closed form but for one integral.

@@ -36,8 +36,6 @@ class PoissonIntegrals:
         E g, without the additive constant of g.
     gamma2 : float
         gamma^2.
-    flux : numpy.ndarray, shape (k,)
-        int_y^inf (g - E g) exp(-Phi) at the outer edge of each element.
     influence : numpy.ndarray, shape (k, POINTS)
         By how much gamma^2 changes, to first order, if g changes by 1 at a Gauss point.
     missed : numpy.ndarray, shape (k,)
@@ -54,7 +52,6 @@ class PoissonIntegrals:
     total: float
     mean: float
     gamma2: float
-    flux: np.ndarray
     influence: np.ndarray
     missed: np.ndarray
     misfit: np.ndarray
@@ -82,8 +79,7 @@ def integrate(e: GaussElements, sigma: float) -> PoissonIntegrals:
     mean += np.sum(mass * (e.g - mean)) / total  # removes the rounding error of a large mean
     centred = e.g - mean
     source = e.half * np.exp(-e.depth) * centred
-    flux, flux_outside = e.from_ends(source)
-    flux, flux_outside = side[:, None] * flux, side * flux_outside
+    flux = side[:, None] * e.from_ends(source)[0]
     slope = 2 / sigma**2 * flux * np.exp(e.depth)
     u = side[:, None] * e.from_middle(e.half * slope)
     u -= np.sum(mass * u) / total
@@ -102,7 +98,6 @@ def integrate(e: GaussElements, sigma: float) -> PoissonIntegrals:
         total,
         mean,
         gamma2,
-        flux_outside,
         influence,
         missed,
         4 * np.abs(u).max(axis=1) * missed,

@@ -1,4 +1,4 @@
-"""gamma^2, mean, invariant density and Poisson solution of a scene with one state variable.
+"""gamma^2, mean and invariant density of a scene with one state variable.
 
 They are integrals, see `poisson_integrals`, summed over Gauss-Legendre elements without any linear
 algebra. Elements have their edges on the kinks of the drift and of g and are halved until g m is a
@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 from nonsmooth.errors import SceneError
 from nonsmooth.estimate import require
 from nonsmooth.line import tuning
-from nonsmooth.line.gauss_elements import NODES, WEIGHTS
 from nonsmooth.line.integrands import Integrands
 from nonsmooth.line.poisson_integrals import (
     PoissonIntegrals,
@@ -126,41 +125,6 @@ def density(scene: Scene, y: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     depth = solution.integrands.depth(np.asarray(y, dtype=float))
     value = np.exp(-depth) / solution.integrals.total
     return value, value * (exponential_rounding(depth) + solution.density_error)
-
-
-def poisson_slope(scene: Scene, y: ArrayLike) -> np.ndarray:
-    """Return u', the derivative of the Poisson solution -A u = g - E g.
-
-    Parameters
-    ----------
-    scene : Scene
-        With the state y and white noise.
-    y : array_like
-        Where the density is above 1e-300 of its maximum, "1".
-
-    Returns
-    -------
-    numpy.ndarray, shape of `y`
-
-    Raises
-    ------
-    SceneError
-        As for `asymptotic_variance`, or if a point is too far out.
-    """
-    solution = solved(scene)
-    s, y = solution.integrals, np.asarray(y, dtype=float)
-    left, right = s.elements.left, s.elements.right
-    if not np.all((left[0] <= y) & (y <= right[-1])):
-        raise SceneError(
-            f"u' is computed where the density is above 1e-300 of its maximum; "
-            f"choose points between {left[0]:g} and {right[-1]:g}"
-        )
-    depth, g = solution.integrands.depth, solution.integrands.g
-    k = np.clip(np.searchsorted(left, y, side="right") - 1, 0, len(left) - 1)
-    half = (np.where(y < 0, left[k], right[k]) - y)[..., None] / 2  # < 0 on the left
-    points = y[..., None] + half * (NODES + 1)
-    inside = np.sum(half * WEIGHTS * (g(points) - s.mean) * np.exp(-depth(points)), axis=-1)
-    return 2 / scene.noise.sigma**2 * (inside + s.flux[k]) * np.exp(depth(y))
 
 
 @functools.lru_cache(maxsize=64)

@@ -150,18 +150,6 @@ def constants(scene: Scene) -> Constants:
     )
 
 
-def drift_expression(scene: Scene) -> sympy.Expr:
-    """Return A_n V_n + epsilon V_n of a scene, an expression in its state."""
-    c = constants(scene)
-    U, _ = assumptions.potential(scene)
-    own = {equations.U(x): U + (c.confinement.shift if c.confinement else 0)}
-    if c.dissipation:
-        own[R(eta, zeta)] = c.dissipation.cross * eta * zeta
-    expression = drift(scene.noise.kind, c.confinement is not None).subs(own).doit()
-    numbers = {s: value for s, value in _numbers(scene).items() if isinstance(s, sympy.Symbol)}
-    return equations.specialise(expression, scene).subs(numbers)
-
-
 def _numbers(scene):
     c = constants(scene)
     return {

@@ -209,32 +209,6 @@ def test_density(n, damping, sigma):
         assert abs(top * reference.total - 1) <= its_error / top
 
 
-@pytest.mark.parametrize("n", [1.0, 100.0, np.inf])
-def test_poisson_slope(n):
-    """The slope agrees with many digits, also far out, and is even for odd g."""
-    scene = ns.Scene("friction", n=n)
-    y = np.array([0.0, 1e-3, 0.009, 0.5, 1.0, 3.0, 12.0, 20.0])
-    slope = quadrature.poisson_slope(scene, y)
-    with mp.workdps(60):
-        reference = Reference(scene, lambda y: {(1, 0.0): 1})
-        for at, found in zip(y, slope, strict=True):
-            at = mp.mpf(at)
-            flux = mp.fsum(
-                reference.integral({(1, 0.0): 1}, max(a, at), b)
-                for a, b in reference.pieces
-                if b > at
-            )
-            exact = reference.rate * flux * mp.exp(reference.depth(at))
-            if at < 12:  # farther, the reference's own end is felt
-                assert abs(found - exact) < 1e-13 * exact
-    # far out u' = 1/(C_b + 1/y) to within y^-2 relative
-    assert slope[-1] == pytest.approx(20 / 21, rel=1 / 400)
-    assert np.allclose(quadrature.poisson_slope(scene, -y), slope, rtol=1e-13, atol=0)
-    assert quadrature.poisson_slope(scene, 0.5).shape == ()
-    with pytest.raises(SceneError, match="choose points"):
-        quadrature.poisson_slope(scene, [100.0])
-
-
 def test_public_function_uses_it():
     """The estimate says how; a tiny C_b, for which the closed form cancels, is no obstacle."""
     found = ns.asymptotic_variance(ns.Scene("friction", observable="y**3"))
