@@ -64,16 +64,7 @@ class Integrands:
         SceneError
             If it is not finite.
         """
-        # all branches of a formula are evaluated everywhere, also where they are not taken
-        with np.errstate(all="ignore"):
-            value = vectorised(self.varying, (symbols.y,))(y)
-        if not np.all(np.isfinite(value)):
-            place = np.asarray(y)[~np.isfinite(value)][0]
-            raise SceneError(
-                f"g = {self.scene.observable!r} is not finite at y = {place:g}; "
-                "choose one that is, or write it so that it does not overflow"
-            )
-        return value
+        return finite_observable(self.scene, vectorised(self.varying, (symbols.y,)), y)
 
     def first_elements(self) -> GaussElements:
         """Make elements with edges at 0 and on the kinks, in which exp(-Phi) changes little."""
@@ -116,6 +107,26 @@ class Integrands:
             if len(grown) == len(edges) or len(grown) > settings.most_elements:
                 return edges
             edges = grown
+
+
+def finite_observable(scene: Scene, g: Callable, y: np.ndarray) -> np.ndarray:
+    """Evaluate a scene's observable g, or g but for a constant.
+
+    Raises
+    ------
+    SceneError
+        If it is not finite.
+    """
+    # all branches of a formula are evaluated everywhere, also where they are not taken
+    with np.errstate(all="ignore"):
+        value = g(y)
+    if not np.all(np.isfinite(value)):
+        place = np.asarray(y)[~np.isfinite(value)][0]
+        raise SceneError(
+            f"g = {scene.observable!r} is not finite at y = {place:g}; "
+            "choose one that is, or write it so that it does not overflow"
+        )
+    return value
 
 
 def _within(edges, end):

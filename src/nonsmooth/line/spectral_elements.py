@@ -14,6 +14,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.grids.elements import energy, lagrange, lobatto, summed
 from nonsmooth.grids.grading import growing, mirrored
 from nonsmooth.line import tuning
+from nonsmooth.line.integrands import finite_observable
 from nonsmooth.line.potential import depth, potential
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
@@ -87,7 +88,7 @@ def assemble(scene: Scene, degree: int) -> tuple[np.ndarray, np.ndarray, np.ndar
         where[k * degree : (k + 1) * degree + 1] = left + half * (nodes + 1)
         at = left + half * (points + 1)
         weight = weights * half * np.exp(-phi(at))
-        values_of_g = _finite(g, at, scene)
+        values_of_g = finite_observable(scene, g, at)
         mass.append(values.T @ (weight[:, None] * values))
         observable.append(values.T @ ((weight * values_of_g)[:, None] * values))
         stiffness.append(energy(slopes, weight / half**2))
@@ -95,14 +96,3 @@ def assemble(scene: Scene, degree: int) -> tuple[np.ndarray, np.ndarray, np.ndar
     total = masses.sum()
     factor = scene.noise.sigma**2 / 2
     return where, masses / total, factor * summed(stiffness) / total, summed(observable) / total
-
-
-def _finite(g, at, scene):
-    with np.errstate(all="ignore"):
-        value = g(at)
-    if not np.all(np.isfinite(value)):
-        raise SceneError(
-            f"g = {scene.observable!r} is not finite at y = {at[~np.isfinite(value)][0]:g}; "
-            "choose one that is, or write it so that it does not overflow"
-        )
-    return value
