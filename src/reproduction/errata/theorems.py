@@ -14,8 +14,8 @@ from nonsmooth.theory import assumptions, drift_bounds, lyapunov
 from reproduction.errata.record import Evidence, erratum
 
 
-def _noisy(damping, n=1):
-    return Scene("elasto_plastic", KanaiTajimi(1.0, damping), n=n, potential="x**2/2")
+def _noisy(damping):
+    return Scene("elasto_plastic", KanaiTajimi(1.0, damping), n=1, potential="x**2/2")
 
 
 @erratum(

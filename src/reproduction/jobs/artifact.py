@@ -12,6 +12,7 @@ from reproduction.errors import ArtifactError
 from reproduction.jobs.files import whole
 
 _MARK = "nonsmooth"  # the `source` attribute starts with it
+_LOCK = Path("environment-lock.txt")  # in the folder from which the workflow runs
 
 
 def dataset(title: str, summary: str, coords: Mapping, variables: Mapping) -> xr.Dataset:
@@ -40,7 +41,7 @@ def dataset(title: str, summary: str, coords: Mapping, variables: Mapping) -> xr
     return xr.Dataset(entries(variables), coords=entries(coords), attrs=attrs)
 
 
-def provenance(rule: str, parameters: Mapping, lock: str | Path = "environment-lock.txt") -> str:
+def provenance(rule: str, parameters: Mapping) -> str:
     """Describe how an artifact is made, without the time of day.
 
     Parameters
@@ -48,15 +49,14 @@ def provenance(rule: str, parameters: Mapping, lock: str | Path = "environment-l
     rule : str
     parameters : mapping
         Everything that the result depends on, with the seed.
-    lock : str or Path
-        The pinned environment, of which the hash is recorded.
 
     Returns
     -------
     str
+        With the hash of the pinned environment.
     """
     arguments = ", ".join(f"{key}={value!r}" for key, value in sorted(parameters.items()))
-    digest = hashlib.sha256(Path(lock).read_bytes()).hexdigest()[:16]
+    digest = hashlib.sha256(_LOCK.read_bytes()).hexdigest()[:16]
     return f"rule {rule}({arguments}); {_MARK} {nonsmooth.__version__}; lock sha256 {digest}"
 
 

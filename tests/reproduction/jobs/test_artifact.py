@@ -93,10 +93,10 @@ def test_missing_truncated_and_foreign_files_are_one_line(tmp_path):
         artifact.read(path)
 
 
-def test_provenance_has_parameters_and_the_lock(tmp_path):
+def test_provenance_has_parameters_and_the_lock(tmp_path, monkeypatch):
     """Rule, parameters, version and the hash of the pinned environment."""
-    lock = tmp_path / "lock.txt"
-    lock.write_text("x==1")
-    text = artifact.provenance("r", {"seed": 4, "n": 2.0}, lock)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "environment-lock.txt").write_text("x==1")
+    text = artifact.provenance("r", {"seed": 4, "n": 2.0})
     assert text.startswith("rule r(n=2.0, seed=4); nonsmooth ")
     assert "lock sha256 " in text

@@ -15,7 +15,7 @@ from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from reproduction.jobs.job import produce
 from reproduction.speed_against_error.work_precision import Case, measured, timed, unseeded
 
-SIMULATED, SOLVED = "Monte Carlo, Strang", "spectral"
+SIMULATED, SOLVED = "Monte Carlo, Strang", "deterministic"
 
 
 def cost(paths, horizons, p, n, names, scenes, step, least, tolerance, paper_scheme, rounds):

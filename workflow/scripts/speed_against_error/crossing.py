@@ -1,4 +1,4 @@
-"""Crossing probabilities by Monte Carlo, spectrally and by formula: error against time."""
+"""Crossing probabilities by Monte Carlo, deterministically and by formula: error against time."""
 
 from itertools import product
 
@@ -32,9 +32,9 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
     paths : list of int
         At the largest p. At smaller ones there are more, in inverse proportion to sqrt(p).
     degrees, contours : list of int
-        Polynomial degree and nodes of the contour, of single spectral solutions.
+        Polynomial degree and nodes of the contour, of single deterministic solutions.
     tolerance : float
-        Of the spectral solution with an error bound.
+        Of the deterministic solution with an error bound.
     rounds : int
 
     Returns
@@ -52,10 +52,10 @@ def crossing(n, threshold, horizon, p, steps, paths, degrees, contours, toleranc
             cases.append(Case(panel, "Monte Carlo, Strang", step, run))
         for degree, contour in zip(degrees, contours, strict=True):
             run = timed(unseeded(_inverted), scene, threshold, horizon, scale, degree, contour)
-            cases.append(Case(panel, "spectral, one solution", degree, run))
+            cases.append(Case(panel, "deterministic, one solution", degree, run))
         for name, size, options in (
             (
-                "spectral, with error bound",
+                "deterministic, with error bound",
                 tolerance,
                 {"method": "deterministic", "tol": tolerance},
             ),
