@@ -75,8 +75,8 @@ class AlternatingSolver:
         }
         self._measure = self._measure_near_origin(rest)
         # Residuals are weighted with a density, because they are to bound errors of means. Without
-        # weights the corners of the box would count most. Walls hold the displacement in a range
-        # where its density does not fall, so that the weight is constant in it.
+        # weights the corners of the box would count most. Between walls the density of the
+        # displacement does not fall off, so that the weight does not depend on it.
         flat = scene.mechanics.argument if scene.mechanics.argument == x else None
         self._scale = self.fold(np.sqrt(_normal(axes, flat)))
 

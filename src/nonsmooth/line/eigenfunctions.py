@@ -69,13 +69,13 @@ def spectrum(scene: Scene, degree: int) -> Spectrum:
         nu, vectors = scipy.linalg.eigh(mass * balance, shifted * balance)
     except (ValueError, np.linalg.LinAlgError):
         raise ToleranceError(
-            f"the generator of {scene} is beyond the range of numbers; choose C_b and n closer to 1"
+            f"the generator of {scene} overflows in double precision; choose C_b and n closer to 1"
         ) from None
     keep = nu > tuning.SPECTRAL_ELEMENTS.least_nu
     nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * scale[:, None]
     vectors /= np.sqrt(nu)  # normalised in L^2(m)
     start = vectors[np.argmin(np.abs(nodes - scene.start.get("y", 0.0)))]
-    vectors, start = vectors * np.sign(start[0]), start * np.sign(start[0])  # phi_0 = 1
+    vectors, start = vectors * np.sign(start[0]), start * np.sign(start[0])  # so that phi_0 = 1
     product = vectors.T @ observable @ vectors
     product -= product[0, 0] * np.eye(len(nu))
     rates = scene.damping * (1 / nu - 1)

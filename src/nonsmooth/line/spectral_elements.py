@@ -39,10 +39,10 @@ def mesh(scene: Scene) -> np.ndarray:
     if phi(start) > settings.depth:
         raise SceneError(
             f"the start y = {scene.start['y']:g} is too far in the tails, where spectral elements "
-            "weighted by the stationary density have no digits; start nearer or use simulate"
+            "weighted by the stationary density are not accurate; start nearer or use simulate"
         )
     end = max(end, settings.past_start * start)
-    knot = min(knot, end)  # one beyond the end does not matter
+    knot = min(knot, end)  # a kink beyond the end does not matter
     widest = end / settings.fewest
     finest = min(max(settings.finest, knot / settings.per_knot), widest)
     outer = growing(knot, end, finest, widest)

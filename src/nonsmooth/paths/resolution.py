@@ -144,7 +144,7 @@ def require_resolved(step: float, variance: float, bias: float, error: float) ->
     """
     if abs(bias) > max(tuning.MONTE_CARLO.measurable * variance, 4 * error):
         raise ToleranceError(
-            f"step = {step:g} is too long for this scene: halving it puts the bias of the variance "
-            f"of int g at {abs(bias) / variance:.0%}, where it is no measure of it; "
+            f"step = {step:g} is too long for this scene: by halving it the bias of the variance "
+            f"of int g is found to be {abs(bias) / variance:.0%}, too much for this to measure it; "
             "choose a smaller step"
         )

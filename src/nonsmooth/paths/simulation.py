@@ -89,7 +89,7 @@ def simulate(
         raise SceneError(f"unknown precision {precision!r}; choose 'float32' or 'float64'")
     at = _output_times(horizon, times)
     require_positive("tol", tol)
-    registry.scheme(scene, scheme)  # refuses what it cannot simulate
+    registry.scheme(scene, scheme)  # raises an error if it cannot simulate the scene
     count = paths_of_variance(tol) if paths is None else paths
     require_count("paths", count)
     if step is None:

@@ -38,5 +38,5 @@ def equal_steps(times: ArrayLike, step: float) -> list[tuple[int, float]]:
     if not np.all(spans > 0):
         raise ValueError("output times must be positive and increase")
     counts = np.maximum(np.ceil(spans / longest - 1e-9).astype(int), 1)
-    # Rounding makes equal steps the same number, so that they share their coefficients.
+    # Steps that differ by rounding only become the same number, so that they share coefficients.
     return [(int(k), float(f"{span / k:.12g}")) for k, span in zip(counts, spans, strict=True)]

@@ -190,5 +190,5 @@ def resolving(edges: np.ndarray, potential: Callable, temperature: float) -> np.
     excess = np.maximum(excess, excess[::-1])  # rounding must not make the mesh asymmetric
     parts = np.sqrt(np.clip(excess / chosen.bend, 1, chosen.most_parts**2))
     parts = np.ceil(parts - 1e-6).astype(int)
-    parts += 1 - parts % 2  # an even number of nodes stays even
+    parts += 1 - parts % 2  # odd, so that an even number of nodes stays even
     return split(edges, parts)

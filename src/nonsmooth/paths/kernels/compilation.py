@@ -21,7 +21,8 @@ _CACHE = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
 
 def kernel(function: Callable, forceinline: bool = False) -> Callable:
     """Compile a function to machine code when it is first called."""
-    # Numba reads the folder here, at decoration. It is put back for other users of numba.
+    # Numba reads the name of the cache folder when a function is decorated. It is restored for
+    # other users of numba.
     config: Any = numba.config
     elsewhere, config.CACHE_DIR = config.CACHE_DIR, _CACHE
     try:

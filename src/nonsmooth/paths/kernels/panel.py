@@ -18,9 +18,9 @@ from nonsmooth.scenes.symbols import STATE_VARIABLES
 FLUSH = 64  # steps after which integrals are added in double precision
 
 _CACHE_LINE = 64  # bytes
-# Length of a row: a bit more than the number of paths, so that it is an odd number of cache lines.
-# The same column of different rows then lies in different sets of the cache, and rows do not push
-# each other out.
+# Length of a row: a bit more than the number of paths, so that in single precision it is an
+# odd number of cache lines. The same column of different rows then lies in different sets of the
+# cache, and rows do not push each other out.
 WIDTH = 1008
 
 # Rows of `data`. 0 to 3: normal numbers. 4 to 7: the state. 8 to 15: scratch. From 16 on:

@@ -198,7 +198,7 @@ def _log(x):
 def _log1p(x):
     u = _F(1.0) + x
     k, f = _split(u)
-    # what rounding took from u, over u where that is below 2 (elsewhere it does not matter)
+    # the rounding error of u = 1 + x, divided by u; where u > 2 it does not matter
     lost = where(u < _F(2.0), (x - (u - _F(1.0))) * (_F(1.5) - _F(0.5) * u), _F(0.0))
     return fma(k, _F(0.693147181), fma(f * f, _horner(_LOG, f), f + lost))
 
