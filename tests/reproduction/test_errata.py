@@ -20,6 +20,7 @@ def evidence():
     return {erratum.label: erratum.evaluate() for erratum in ERRATA}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("label", LABELS)
 def test_printed_is_wrong_and_mended_is_right(evidence, label):
     """The printed value violates the stated relation to the reference, the mended one keeps it."""
@@ -40,6 +41,7 @@ def test_every_entry_is_there():
     assert len(set(LABELS)) == len(LABELS)
 
 
+@pytest.mark.slow
 def test_texts_are_balanced(evidence):
     """Dollar signs and braces are paired, and every label of the paper has its number."""
     for erratum in ERRATA:
@@ -65,6 +67,7 @@ def test_relations(relation, right, wrong):
     assert not any(map(e.holds, wrong))
 
 
+@pytest.mark.slow
 def test_known_values(evidence):
     """The references agree with formulas derived by hand."""
     assert evidence["1"].reference == pytest.approx(1 / 1.4, rel=1e-15)  # 1/(2 C_b)
@@ -76,6 +79,7 @@ def test_known_values(evidence):
     assert evidence["14b"].reference == 1
 
 
+@pytest.mark.slow
 def test_printed_numbers_are_the_papers(evidence):
     """They agree with those of paper/printed.yaml."""
     printed = yaml.safe_load((ROOT / "paper" / "printed.yaml").read_text(encoding="utf-8"))
@@ -86,6 +90,7 @@ def test_printed_numbers_are_the_papers(evidence):
     ]
 
 
+@pytest.mark.slow
 def test_only_one_entry_of_table_4_is_truncated(evidence):
     """That of n = 2 is truncated; that of n = 50 is neither rounded nor truncated."""
     truncated = {k: int(evidence[k].reference * 1e6) / 1e6 for k in ("5b", "5c")}
