@@ -98,7 +98,7 @@ class AlternatingSolver:
         ]
 
     def _measure_near_origin(self, rest):
-        """Return a measure of mass 1, by whose integral of the solution its constant is fixed."""
+        """Return a measure of mass 1; the integral of a solution over it fixes the constant."""
         masses = scipy.linalg.null_space(self._noise[EVEN].T, rcond=1e-9)[:, 0]
         masses = masses.reshape(self._kept, 1, self._own) / masses.sum()
         measure = (masses * _bump(rest)[None, :, None]).ravel()

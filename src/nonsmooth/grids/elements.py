@@ -19,7 +19,7 @@ from scipy.special import roots_jacobi
 
 @dataclass(frozen=True)
 class Axis:
-    """Nodes of one variable and what acts on functions of it.
+    """Nodes of one variable and the matrices that act on functions of it.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ class _Solved:
 
 @dataclass(frozen=True)
 class _Error:
-    """The error of values, and whether levels converge so fast that a finer one may do."""
+    """The error of values, and whether the levels converge fast enough to go on."""
 
     bound: np.ndarray
     converging: bool

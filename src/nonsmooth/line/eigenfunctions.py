@@ -17,7 +17,7 @@ from nonsmooth.scenes.scene import Scene
 
 @dataclass(frozen=True)
 class Spectrum:
-    """Eigenpairs of -A in L^2(m) and what is needed of them.
+    """Eigenvalues of -A in L^2(m), and what is needed of the eigenfunctions.
 
     Attributes
     ----------

@@ -45,7 +45,7 @@ class Integrands:
 
     @classmethod
     def of(cls, scene: Scene) -> "Integrands":
-        """Read them off a scene.
+        """Take the functions from a scene.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class Integrands:
 
 
 def finite_observable(scene: Scene, g: Callable, y: np.ndarray) -> np.ndarray:
-    """Evaluate a scene's observable g, or g but for a constant.
+    """Evaluate g, or g without its additive constant, and refuse values that are not finite.
 
     Raises
     ------

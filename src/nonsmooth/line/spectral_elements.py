@@ -52,7 +52,7 @@ def mesh(scene: Scene) -> np.ndarray:
 
 @lru_cache(maxsize=8)
 def _reference_element(degree):
-    """Lagrange basis on the Gauss-Lobatto nodes at over-integrating Gauss points."""
+    """Nodes, Gauss points and weights, and the Lagrange basis with its slopes at these points."""
     nodes, _, _ = lobatto(degree)
     points, weights = legendre.leggauss(degree + tuning.SPECTRAL_ELEMENTS.extra_points)
     return nodes, points, weights, *lagrange(nodes, points)

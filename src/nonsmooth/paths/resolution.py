@@ -29,7 +29,7 @@ def first_step(scene: Scene, times: np.ndarray, scheme: str = "strang") -> float
 
 
 def paths_for(deviation: float, tol: float) -> int:
-    """Count the paths whose average, of a given standard deviation each, is within `tol`."""
+    """Count the paths whose average is known to `tol`, if each has the given deviation."""
     chosen = tuning.MONTE_CARLO
     return math.ceil((chosen.sigmas * deviation / (chosen.spread_share * tol)) ** 2)
 
@@ -42,7 +42,7 @@ def paths_of_variance(tol: float) -> int:
 
 
 def halving_paths(paths: int) -> int:
-    """Count the paths that measure the bias of the step, of a given number of paths altogether."""
+    """Count how many of the paths are used to measure the bias of the step."""
     return min(paths, max(tuning.MONTE_CARLO.pilot_paths, paths // tuning.MONTE_CARLO.halved))
 
 

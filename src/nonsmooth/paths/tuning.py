@@ -76,7 +76,7 @@ CONTROL_VARIATE = ControlVariate()
 
 @dataclass(frozen=True)
 class StableStep:
-    """Where the scheme `strang` looks for the largest U'' and the fastest place of a noise."""
+    """Where the scheme `strang` looks for the largest U'' and the fastest rate of a noise."""
 
     # chosen: largest displacement looked at where there are no walls, a few units
     free: float = 5.0

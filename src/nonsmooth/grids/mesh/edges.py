@@ -95,7 +95,7 @@ def _holding_force(scene):
 
 
 def _beyond(scene, beyond, finest):
-    """Distances of edges from the kink, outward, over the part of the box that lies beyond."""
+    """Distances of the edges from the kink on its outer side, up to the end of the box."""
     chosen = tuning.ELEMENTS
     if not scene.mechanics.in_potential:
         return _towards(beyond, min(finest, beyond * chosen.stopping))

@@ -35,7 +35,7 @@ class DriftImplicit(NamedTuple):
 
 
 def handles(scene: Scene) -> bool:
-    """Only the velocity under dry friction, with white noise and g = y."""
+    """Whether the state is the velocity alone, under dry friction and white noise, and g = y."""
     return (
         scene.state == ("y",)
         and scene.noise.kind == "white"

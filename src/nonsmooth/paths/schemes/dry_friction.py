@@ -35,7 +35,7 @@ class DryFriction(NamedTuple):
 
 
 def handles(scene: Scene) -> bool:
-    """Only the velocity under dry friction at n = inf, with white noise and g = y."""
+    """Whether n = inf, the state is the velocity alone, the noise is white, and g = y."""
     return math.isinf(scene.n) and drift_implicit.handles(scene)
 
 

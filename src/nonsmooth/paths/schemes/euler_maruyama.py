@@ -51,7 +51,7 @@ def coefficients(scene: Scene, step: float, precision: str = "float32") -> Euler
 
 
 def handles(scene: Scene) -> bool:
-    """Only a finite n: the drift must be a function."""
+    """Whether n is finite, since the drift must be a function."""
     return math.isfinite(scene.n)
 
 

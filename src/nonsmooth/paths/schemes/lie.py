@@ -21,7 +21,7 @@ from nonsmooth.scenes.scene import Scene
 
 
 class Lie(NamedTuple):
-    """Coefficients of the scheme: the friction's knot and rate within, and the Gaussian step."""
+    """Coefficients of the scheme: the friction's knot, its rate below it, and the Gaussian step."""
 
     step: float
     normals: int
