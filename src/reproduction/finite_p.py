@@ -31,7 +31,7 @@ def probabilities(
     horizons : array_like
     p : numpy.ndarray
     options : mapping
-        The method and its options, as of `crossing_probability`.
+        The method and its options, as for `crossing_probability`.
 
     Returns
     -------

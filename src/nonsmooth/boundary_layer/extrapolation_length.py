@@ -31,7 +31,7 @@ def extrapolation_length(
     side : {"upper", "lower"}, optional
         Of the threshold. For odd g kappa is the same on both sides.
     seed, threads
-        Of Monte Carlo: int or tuple; all cores unless given.
+        For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
     Returns
     -------

@@ -57,7 +57,7 @@ def layer_constants(
     scene : Scene
         With the state y and white noise, or with odd g.
     seed, threads
-        Of Monte Carlo: int or tuple; all cores unless given.
+        For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
     Returns
     -------

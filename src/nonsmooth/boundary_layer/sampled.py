@@ -60,7 +60,7 @@ def sampled_kappa(
     tol : float, optional
         Absolute error wanted, "1"; a fifth of kappa unless given.
     seed, threads
-        Of Monte Carlo: int or tuple; all cores unless given.
+        For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
     Returns
     -------
@@ -103,14 +103,14 @@ def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = N
     scene : Scene
         With odd g.
     seed, threads
-        Of Monte Carlo: int or tuple; all cores unless given.
+        For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
     Returns
     -------
     Estimate
-        The error is two standard errors, what the second half of the time adds, and the bias of the
-        time step with two standard errors. For a start at the origin the value is exactly 0,
-        because drift and g are odd.
+        The error is the sum of two standard errors, of the change in the second half of the time,
+        and of the bias of the time step with two standard errors of that. For a start at the origin
+        the value is exactly 0, because drift and g are odd.
     """
     began = time.perf_counter()
     if not any(scene.start.values()):

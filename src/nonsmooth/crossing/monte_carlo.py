@@ -73,14 +73,14 @@ def sampled_crossing(
     Parameters
     ----------
     scene, threshold, horizons, p, seed, threads, tol, step, paths, precision
-        As of `crossing_probability`, the threshold as a pair.
+        As for `crossing_probability`, the threshold as a pair.
     most : float
         Largest number of steps of all paths. If more are needed, this raises an error instead.
 
     Returns
     -------
     values : dict
-        As of `crossing_estimate`, and `step_bias` with its error.
+        As for `crossing_estimate`, and `step_bias` with its error.
     attributes : dict
         `step`, `paths`.
 

@@ -218,14 +218,14 @@ class AlternatingSolver:
         Parameters
         ----------
         values, parity
-            As of `solver.PoissonSolver.solve`.
+            As for `solver.PoissonSolver.solve`.
         accuracy : float
             Norm of the residual, weighted with a normal density, relative to that of f.
 
         Returns
         -------
         u, mean
-            As of `solver.PoissonSolver.solve`.
+            As for `solver.PoissonSolver.solve`.
 
         Raises
         ------

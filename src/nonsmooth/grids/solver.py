@@ -93,7 +93,7 @@ class PoissonSolver(Protocol):
         Parameters
         ----------
         accuracy : float
-            As of `solve`.
+            As for `solve`.
 
         Returns
         -------

@@ -186,7 +186,7 @@ def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Wave
     Parameters
     ----------
     grid, z, lower, upper
-        As of `first_passage`.
+        As for `first_passage`.
 
     Returns
     -------

@@ -33,7 +33,7 @@ def element_edges(
     Parameters
     ----------
     scene, time, reach, deepest, grading, distances
-        As of `ordinates_line.ordinates`.
+        As for `ordinates_line.ordinates`.
 
     Returns
     -------
@@ -93,7 +93,7 @@ class _Widths:
     singular, finest : numpy.ndarray, shape (s,)
         Zeros of g and the start, and the widths that elements may have next to them.
     grading, deepest, distances
-        As of `ordinates_line.ordinates`.
+        As for `ordinates_line.ordinates`.
     """
 
     scene: Scene

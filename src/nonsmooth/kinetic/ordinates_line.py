@@ -78,7 +78,7 @@ class Ordinates:
         Parameters
         ----------
         z, values
-            As of `resolvent`.
+            As for `resolvent`.
 
         Returns
         -------

@@ -36,7 +36,7 @@ def asymptotic_variance(
         `tol`, Monte Carlo. If it fails, the other method is tried, but Monte Carlo only if `tol`
         is a percent or more.
     seed, threads
-        Of Monte Carlo: int or tuple; all cores unless given.
+        For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = No
     ----------
     scene : Scene
     seed, threads
-        Of Monte Carlo.
+        For Monte Carlo.
 
     Returns
     -------
@@ -132,7 +132,7 @@ def stationary_mean(
     ----------
     scene : Scene
     seed, threads
-        Of Monte Carlo.
+        For Monte Carlo.
 
     Returns
     -------

@@ -40,7 +40,7 @@ def gamma2(scene: Scene, tol: float) -> tuple[float, float]:
     Raises
     ------
     ToleranceError
-        As of `gamma2_by_combination`.
+        As for `gamma2_by_combination`.
     """
     if uniform_refinement.applies(scene):
         found = gamma2_by_uniform_refinement(scene, tol)
@@ -93,7 +93,7 @@ def gamma2_by_uniform_refinement(scene: Scene, tol: float) -> Refined:
     Returns
     -------
     Refined
-        As of `uniform_refinement.refined`.
+        As for `uniform_refinement.refined`.
     """
     rounding = tuning.GAMMA2_ON_GRIDS.rounding
 

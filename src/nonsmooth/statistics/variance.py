@@ -40,7 +40,7 @@ def variance(
         for two variables and a `tol` so loose that a few paths are enough. ``"monte_carlo"`` is
         taken for all others.
     seed, threads
-        Of Monte Carlo: int or tuple; all cores unless given.
+        For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
     Returns
     -------

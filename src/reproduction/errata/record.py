@@ -66,5 +66,5 @@ class Erratum:
 def erratum(
     label: str, place: str, wrong: str, right: str
 ) -> Callable[[Callable[[], Evidence]], Erratum]:
-    """Make an entry of the function below, which evaluates it; arguments as of `Erratum`."""
+    """Make an entry of the function below, which evaluates it; arguments as for `Erratum`."""
     return lambda evaluate: Erratum(label, place, wrong, right, evaluate)

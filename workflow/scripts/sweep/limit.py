@@ -28,7 +28,7 @@ def limit(variance, solved, scenes, names, horizon, outputs):
     Returns
     -------
     xarray.Dataset
-        Over (scene, horizon); with the gamma^2 that everything else takes from here.
+        Over (scene, horizon); with the gamma^2 that all later steps of the workflow use.
 
     Raises
     ------

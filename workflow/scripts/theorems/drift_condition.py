@@ -29,7 +29,7 @@ def search(potentials, langevin, damping, n, points, reach):
     potentials : dict
         Model -> list of U.
     langevin : list of str
-        Potentials v of the colored noise of type 1; white and Kanai-Tajimi noise come besides.
+        Potentials v of the colored noise of type 1. White and Kanai-Tajimi noise are searched, too.
     damping, n : list of float
     points : int
         Points of the grid for each scene.
@@ -44,7 +44,7 @@ def search(potentials, langevin, damping, n, points, reach):
     Raises
     ------
     CheckError
-        If an inequality fails beyond rounding, other than claim S_4 as printed.
+        If an inequality fails by more than rounding, other than Claim 10 of the paper as printed.
     """
     forcings = {"white": [("", NOISES["white"])]}
     forcings["langevin"] = [(v, Langevin(v)) for v in langevin]

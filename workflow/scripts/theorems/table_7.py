@@ -38,7 +38,7 @@ def smallest(drift_condition):
             for name, label in COLUMNS.items()
         }
         if row.noise != "hamiltonian":
-            shown[COLUMNS["forcing_printed"]] = "--"  # claim S_3 is right as printed
+            shown[COLUMNS["forcing_printed"]] = "--"  # Claim 9 of the paper is right as printed
         v = ", $v = " + latex(parse(row.v, (eta,))) + "$" if row.v else ""
         cells.append(
             {
@@ -53,7 +53,7 @@ def smallest(drift_condition):
 
 
 def _margin(value, rounding):
-    """Spell a margin: none but for rounding where it is attained, 1 where there is no claim."""
+    """Spell a margin: 0 if it is below rounding, a dash if there is no claim, as 1 says."""
     if value == 1:
         return "--"
     if abs(value) <= rounding:

@@ -39,7 +39,7 @@ def ergodic(ergodicity, scenes):
 def _with_error(value, error):
     """Spell a value and its error, rounded up to one digit, at most six decimals.
 
-    What rounding the value adds is in the error.
+    The error includes the rounding of the value.
     """
     digits = min(6, max(1, int(np.ceil(-np.log10(error)))))
     unit = 10.0**-digits

@@ -1,4 +1,4 @@
-"""What halving the time step changes in figure 2a's Monte Carlo."""
+"""The change of figure 2a's Monte Carlo results by halving the time step."""
 
 from functools import partial
 
@@ -18,8 +18,8 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
     Returns
     -------
     xarray.Dataset
-        From an ensemble independent of the shards'. With a scheme of weak order q the bias of
-        step h is the change by halving, divided by 1 - 2^-q.
+        From paths independent of those of the shards. With a scheme of weak order q the bias of the
+        step h is the change by halving it, divided by 1 - 2^-q.
     """
     scene = Scene(**scene)
     tau = time_grids.logarithmic(first_time, horizon, points)

@@ -136,7 +136,7 @@ def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict
     Returns
     -------
     dict
-        As of `deterministic_crossing`.
+        As for `deterministic_crossing`.
 
     Raises
     ------

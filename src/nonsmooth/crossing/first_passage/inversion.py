@@ -58,7 +58,7 @@ class _Inversion:
     saddles : SaddlePoints
     level : ContourLevel
     known, wanted
-        As of `contour_solver`.
+        As for `contour_solver`.
     """
 
     def __init__(
