@@ -20,8 +20,9 @@ class LineOrdinates:
     # fewer digits matter, and elements are wider by 26 over the logarithm of this ratio ...
     digits: float = 26.0
     rarest: float = 0.1  # chosen: ... but at most 1/rarest times as wide
-    reach: float = 12.0  # derived: deviations beyond the start; exceeded with probability exp(-72)
-    long_time: float = 1e3  # chosen: time unless given, in units of 1/C_b; so long as not to matter
+    # derived: the grid reaches so many deviations beyond the start; more has probability exp(-72)
+    reach: float = 12.0
+    long_time: float = 1e3  # chosen: time unless given, in 1/C_b; so long that it has no effect
     shrink: float = 0.98  # chosen: factor by which the axis is shortened until it ends at `deepest`
     probed: int = 4001  # chosen: points of the sums that give the spread of the velocity
     searched: int = 501  # chosen: points between which sign changes of g are looked for
@@ -47,9 +48,9 @@ class PlaneLevel(NamedTuple):
     driven, other : int
         Polynomial degree in the variable that noise drives, and in the other.
     ratio : float
-        Of neighbouring elements, where they are graded.
+        Ratio of the widths of neighbouring elements, where they are graded.
     finest : float
-        Element where g = 0, relative to the end of the axis.
+        Width of the element next to g = 0, relative to the end of the axis.
     """
 
     driven: int
@@ -125,7 +126,7 @@ class AddingDoubling:
     """Slabs that are put together."""
 
     opaque: float = 1e-10  # chosen: transmission of a slab that is as good as a half space
-    most: int = 100  # chosen: doublings on the way there; 2^100 thicknesses absorb if any do
+    most: int = 100  # chosen: doublings until it is opaque; if 2^100 slabs are not, no number is
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ class TailDescent:
     linear: float = 1e-12  # derived: relative deviations from a line up to this are rounding
     times: int = 401  # chosen: times among which the end of the descent is sought
     series: float = 1e-2  # derived: below it a series gives the variance; its next term is 1e-12
-    rate: float = 3.0  # chosen: safety of the rate at which the solution changes at the level
+    rate: float = 3.0  # chosen: factor of safety on the rate of change of the solution at the level
 
 
 @dataclass(frozen=True)
@@ -152,9 +153,9 @@ class TailEquation:
     stages: int = 5  # chosen: of the Radau IIA method, of order 9
     turn: float = 5.0  # chosen: largest |z| t of a step, t its duration, times the degree
     rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
-    width: float = 0.9  # chosen: of elements, over the spread of velocities on the way down
-    beyond: float = 4.0  # derived: spreads of y by which the grid goes beyond the start
-    coarse: int = 7  # chosen: degree of the bound of the longest way
+    width: float = 0.9  # chosen: width of elements over the spread of velocities on the way down
+    beyond: float = 4.0  # chosen: spreads of y by which the grid reaches beyond the start
+    coarse: int = 7  # chosen: polynomial degree for the bound of the longest way
     exponents: int = 49  # chosen: exponents theta tried for that bound, over six decades
 
 

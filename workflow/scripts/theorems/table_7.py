@@ -53,7 +53,7 @@ def smallest(drift_condition):
 
 
 def _margin(value, rounding):
-    """Spell a margin: 0 if it is below rounding, a dash if there is no claim, as 1 says."""
+    """Spell a margin: 0 if it is below rounding, a dash for 1, which stands for no claim."""
     if value == 1:
         return "--"
     if abs(value) <= rounding:

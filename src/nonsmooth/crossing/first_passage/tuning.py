@@ -29,20 +29,20 @@ class SaddlePoints:
     """
 
     angles: tuple[float, ...] = (0.2, 0.4, 0.67)  # chosen: at which the growth of |F| is measured
-    steepest: float = 0.0  # chosen: angle of a contour where |F| grows too much at all of them
-    tamed: float = 0.3  # chosen: growth over fall, at most, on a contour through the saddle
-    tame: float = 0.08  # chosen: growth over fall, at most, on a hyperbola
-    harmless: float = 0.7  # chosen: growth that does not matter; poles near the axis cause it
+    steepest: float = 0.0  # chosen: angle of a contour if |F| grows too much at all of them
+    tamed: float = 0.3  # chosen: largest growth over fall on a contour through the saddle point
+    tame: float = 0.08  # chosen: largest growth over fall on a hyperbola
+    harmless: float = 0.7  # chosen: growth of log |F| that is ignored; poles near the axis cause it
     negligibly: float = 30.0  # derived: where exp(z t) < exp(-30) growth does not matter
     # chosen: for a hyperbola growth matters only where |z| t is larger; poles nearer to 0 are
     # inside the contour
     far: float = 6.0
-    risen: float = 0.05  # chosen: bound of the probability from which on hyperbolas serve
-    spacing: float = 0.6  # chosen: of log z on the axis, for a spline of log F
-    fine: float = 0.01  # chosen: of log z on the spline
-    first: float = 0.1  # chosen: smallest z t looked at
-    largest: float = 150.0  # chosen: largest z t looked at
-    least_bend: float = 0.1  # chosen: second derivative in log z, at least, against rounding
+    risen: float = 0.05  # chosen: hyperbolas serve where the probability's bound is at least this
+    spacing: float = 0.6  # chosen: distance of samples of log F in log z, for a spline
+    fine: float = 0.01  # chosen: distance in log z at which the spline is searched
+    first: float = 0.1  # chosen: smallest z t examined
+    largest: float = 150.0  # chosen: largest z t examined
+    least_bend: float = 0.1  # chosen: least second derivative in log z; smaller ones are rounding
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,10 @@ class Hyperbola:
     Attributes
     ----------
     sector : float
-        Half angle about the negative axis of the poles, and of what grows there.
+        Half angle of the sector around the negative axis that has the poles of F, and in which F
+        grows.
     ratio : float
-        Last time over first time, at most.
+        Largest ratio of last to first time.
     more : int
         Number of nodes in addition to those of a level.
     since : float
@@ -143,7 +144,7 @@ class StepLevel:
         Smallest element in x, over the lesser of the distance to the threshold and of the way
         that int g goes in a relaxation time.
     step : float
-        Length of the steps, relative.
+        Length of the steps, relative to that of `TimeStepping`.
     """
 
     resolution: int
@@ -156,16 +157,16 @@ class StepLevel:
 class TimeStepping:
     """Steps in time of two state variables."""
 
-    ratio: float = 2.0  # chosen: of neighbouring elements in x
+    ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x
     longest: float = 0.1  # chosen: longest step, in relaxation times
     first: float = 5e-3  # chosen: first step over the mean duration, ...
-    early: float = 4.0  # chosen: ... which is cut off at so many relaxation times
-    per_length: float = 100.0  # chosen: steps of one length before it is doubled
+    early: float = 4.0  # chosen: ... or over so many relaxation times if these are shorter
+    per_length: float = 100.0  # chosen: the step is doubled once time is so many times the step
     reached: float = 6.0  # chosen: end of the axis where there is no threshold, in spreads of ...
     slow: float = 8.0  # chosen: ... int g if its correlation time is half of so many relaxations
-    gone: float = 1e-6  # chosen: survival that is taken as 0, below the error
-    short: float = 500.0  # chosen: relaxation times; slabs are faster for more
-    tail: float = 15.0  # chosen: mean durations after which nothing is left
+    gone: float = 1e-6  # chosen: survival probability that is taken as 0, below the error
+    short: float = 500.0  # chosen: longest duration, in relaxation times; beyond, slabs are faster
+    tail: float = 15.0  # chosen: number of mean durations after which practically all have crossed
     most: int = 20_000  # chosen: steps, after which this gives up with an error
     # chosen: values so far outside of [0, 1] mean that the solution grows; elements overshoot by
     # less where a front passes
