@@ -52,6 +52,7 @@ class TestSlab:
         assert abs(fine - exact) <= 2 * abs(fine - coarse) + 1e-9
         assert abs(fine - exact) < tuning.PLANE.default_tolerance / 5
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("name", SCENES)
     def test_exits_surely(self, name):
         """(1 - h) / z increases to the mean exit time as z falls, so that exit is certain."""
@@ -63,6 +64,7 @@ class TestSlab:
         assert 0 < mean[0] < mean[1] < mean[2]
         assert mean[2] == pytest.approx(mean[1], rel=1e-4 * mean[2] + 1e-3)
 
+    @pytest.mark.slow
     def test_fast_noise_is_white(self):
         """Ornstein-Uhlenbeck noise of the rate theta = sigma is white up to 1/theta.
 
