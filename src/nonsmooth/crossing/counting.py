@@ -152,7 +152,8 @@ def bias_of_counts(
     paths = len(fine)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
     factor = 1 / (1 - 2 ** -registry.scheme(scene, "strang").weak_order(scene))
-    # If all paths have the same outcome with both steps, the error is as large as if one had not.
+    # Even if all paths have the same outcome with both steps, the error is not 0: it is then that
+    # of a single path with different outcomes.
     error = np.sqrt(np.maximum(change.var(axis=0), 1 / paths) / paths)
     return factor * change.mean(axis=0), factor * error
 
