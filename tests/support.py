@@ -5,10 +5,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import sympy
+
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import boxed, plane_ordinates
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.schemes import strang
+from nonsmooth.scenes import equations
+from nonsmooth.scenes.penalties import n
+from nonsmooth.scenes.symbols import eta, x, y, zeta
 
 ROOT = Path(__file__).parents[1]
 TRACKED = (
@@ -90,3 +95,18 @@ def copy_repository(destination, *extra):
             (destination / name).parent.mkdir(exist_ok=True)
             shutil.copy2(source, destination / name)
     return Repository(destination)
+
+
+def specialised(expression, scene):
+    """Replace the undefined functions of `equations` by a scene's own, but not the symbol C_b."""
+    model, noise = scene.mechanics, scene.noise
+    own = {
+        equations.U(x): scene.potential_expression + model.added_potential,
+        equations.f_y(y): model.velocity_penalty,
+        equations.f_x(x): model.displacement_penalty,
+    }
+    if noise.kind == "langevin":
+        own[equations.v(eta)] = noise.potential_expression
+    elif noise.kind == "hamiltonian":
+        own |= {equations.H(eta, zeta): noise.energy, equations.F(eta, zeta): noise.dissipation}
+    return expression.subs(own).doit().subs(n, sympy.Float(scene.n))

@@ -83,11 +83,9 @@ def spectrum(scene: Scene, degree: int) -> Spectrum:
     return Spectrum(rates, product[0], product, start)
 
 
-def mean(scene: Scene, degree: int | None = None) -> float:
+def mean(scene: Scene) -> float:
     """Return the mean of the observable under the invariant density."""
-    if degree is None:
-        degree = tuning.SPECTRAL_ELEMENTS.degree_of_mean
-    return assemble(scene.with_start({}), degree)[3].sum()
+    return assemble(scene.with_start({}), tuning.SPECTRAL_ELEMENTS.degree_of_mean)[3].sum()
 
 
 def rounding(scene: Scene, degree: int) -> float:

@@ -14,7 +14,6 @@ Nothing is solved in this package.
 - `formulas.parse`, `formulas.vectorised`: text to sympy, sympy to numpy, without `eval`
 - `symbols`: the variables zeta, eta, y, x and the damping C_b
 - `thresholds.bounds`: the two levels of a threshold
-- `equations`: Table 2 of the paper with undefined functions for potentials and penalties;
-  `equations.specialise` replaces them by those of a scene
+- `equations`: Table 2 of the paper with undefined functions for potentials and penalties
 - `relaxation.rate_at_infinity`: how fast paths come back from far out
 """

@@ -187,7 +187,7 @@ def moments_on(
 class _Functions:
     """Orthonormal functions in L^2 of the absolute value of a measure."""
 
-    def __init__(self, masses, functions=()):
+    def __init__(self, masses, functions):
         # on coarse grids masses may be negative where they are small
         self.masses = np.abs(masses) + np.finfo(float).eps * np.max(masses)
         self.rows = np.empty((0, len(masses)))

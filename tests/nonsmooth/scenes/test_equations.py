@@ -11,8 +11,9 @@ from nonsmooth.scenes import equations, symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.models.friction import FRICTION
 from nonsmooth.scenes.models.obstacle import OBSTACLE
+from nonsmooth.scenes.penalties import n
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x, y
-from support import one_step
+from support import one_step, specialised
 
 NOISES = {
     "white": "white",
@@ -37,7 +38,7 @@ def test_typeset_drift_is_the_kernels_drift(model, noise):
         model, NOISES[noise], n=7.0, damping=0.6, potential="x**2/2 + 0.3*cos(x)", observable="x"
     )
     typeset = {
-        s: equations.specialise(f, scene).subs(symbols.damping, scene.damping)
+        s: specialised(f, scene).subs(symbols.damping, scene.damping)
         for s, f in equations.drift(scene.noise).items()
     }
     rng = np.random.default_rng(5)
@@ -61,7 +62,7 @@ def test_scene_and_table_have_one_drift(model, noise):
     numbers = {s: sympy.Float(value) for s, value in zip(STATE_VARIABLES, rng.normal(size=4))}  # noqa: B905
     numbers[symbols.damping] = sympy.Float(scene.damping)
     for s, f in scene.numerical_drift().items():
-        typeset = equations.specialise(equations.drift(scene.noise)[s], scene)
+        typeset = specialised(equations.drift(scene.noise)[s], scene)
         assert float(typeset.subs(numbers)) == pytest.approx(float(f.subs(numbers)), rel=1e-12)
 
 
@@ -81,7 +82,7 @@ def test_table_3_potential_gives_the_obstacle_force():
     """U_n' - U' of the typeset potential is the penalty force of the kernels."""
     obstacle = OBSTACLE
     difference = sympy.diff(obstacle.added_potential, x) - obstacle.penalty_force
-    for value, n in itertools.product((-2.5, -0.5, 0.3, 1.7), (2, 100)):
-        assert float(difference.subs({x: value, equations.n: n})) == 0
+    for value, number in itertools.product((-2.5, -0.5, 0.3, 1.7), (2, 100)):
+        assert float(difference.subs({x: value, n: number})) == 0
     assert obstacle.velocity_penalty == obstacle.displacement_penalty == 0
-    assert FRICTION.velocity_penalty.free_symbols == {y, equations.n}
+    assert FRICTION.velocity_penalty.free_symbols == {y, n}

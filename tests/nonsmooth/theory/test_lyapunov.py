@@ -10,6 +10,7 @@ from nonsmooth.scenes import equations
 from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
 from nonsmooth.theory import assumptions, lyapunov
 from nonsmooth.theory.lyapunov import C_V, C_b, K, M, delta, epsilon, xi
+from support import specialised
 
 U, slope = equations.U(x), sympy.Derivative(equations.U(x), x)
 F_X, F_Y = equations.f_x(x), equations.f_y(y)
@@ -52,7 +53,7 @@ def drift_of(scene):
         **{xi: c.noise_weight, K: c.noise_weight, M: c.dissipation.M if c.dissipation else 0.0},
     }
     expression = lyapunov.drift(scene.noise.kind).subs(own).doit()
-    return equations.specialise(expression, scene).subs(numbers)
+    return specialised(expression, scene).subs(numbers)
 
 
 @pytest.mark.parametrize("model", ["elasto_plastic", "friction", "obstacle"])
