@@ -85,7 +85,7 @@ def _are_artifacts(paths):
     return all(Path(path).suffix == ".nc" for path in every)
 
 
-def produce(compute: Callable, task: Task) -> None:
+def produce(compute: Callable, task: Task, **options: object) -> None:
     """Run a task whose output is one artifact.
 
     Parameters
@@ -93,9 +93,12 @@ def produce(compute: Callable, task: Task) -> None:
     compute : callable
         Takes the task's input artifacts and parameters by name, returns an xarray.Dataset.
     task : Task
+    **options
+        More arguments of `compute`, on which the result does not depend, such as `threads`.
     """
     with job(task.log[0]):
         data, parameters = inputs(task), dict(task.params.items())
         first = [d[0] if isinstance(d, list) else d for d in data.values()]
         trail = [d.attrs["history"] for d in first] + [artifact.provenance(task.rule, parameters)]
-        artifact.write(compute(**data, **parameters), task.output[0], "\n".join(trail))
+        result = compute(**data, **parameters, **options)
+        artifact.write(result, task.output[0], "\n".join(trail))

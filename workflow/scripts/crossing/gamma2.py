@@ -1,7 +1,5 @@
 """Relative bias of gamma^2 by figure 2b's time step."""
 
-from functools import partial
-
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.moments import step_bias
 from nonsmooth.paths.sampling import Sampling
@@ -40,4 +38,4 @@ def bias_of_gamma2(scene, time, step, paths, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(bias_of_gamma2, threads=snakemake.threads), snakemake)
+    produce(bias_of_gamma2, snakemake, threads=snakemake.threads)

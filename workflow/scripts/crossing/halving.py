@@ -1,7 +1,5 @@
 """By how much halving the time step shifts the first-passage times of figure 2b."""
 
-from functools import partial
-
 from nonsmooth.crossing.counting import first_passage_shift
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.sampling import Sampling
@@ -46,4 +44,4 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(halving, threads=snakemake.threads), snakemake)
+    produce(halving, snakemake, threads=snakemake.threads)

@@ -1,7 +1,5 @@
 """One shard of figure 2b: how many paths cross by each horizon."""
 
-from functools import partial
-
 import numpy as np
 
 from nonsmooth.crossing.counting import first_passage_counts
@@ -35,4 +33,4 @@ def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(shard, threads=snakemake.threads), snakemake)
+    produce(shard, snakemake, threads=snakemake.threads)

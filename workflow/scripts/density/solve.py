@@ -1,7 +1,5 @@
 """Invariant densities of velocity and displacement of one scene, solved and as histograms."""
 
-from functools import partial
-
 import numpy as np
 
 from nonsmooth.paths.ensembles import paths_at
@@ -58,4 +56,4 @@ def _edges(scene, name, sample, bins, reach):
 
 
 if __name__ == "__main__":
-    produce(partial(densities, threads=snakemake.threads), snakemake)
+    produce(densities, snakemake, threads=snakemake.threads)

@@ -1,7 +1,6 @@
 """gamma^2 of scenes whose potentials are given by formulas, with and without Monte Carlo."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -80,4 +79,4 @@ def potentials(scenes, tolerance, times, paths, halving_paths, step, seed, threa
 
 
 if __name__ == "__main__":
-    produce(partial(potentials, threads=snakemake.threads), snakemake)
+    produce(potentials, snakemake, threads=snakemake.threads)

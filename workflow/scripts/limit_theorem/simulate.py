@@ -1,7 +1,5 @@
 """Samples of Xi_p(1) and of the running maximum of |Xi_p| of one scene, for every p."""
 
-from functools import partial
-
 import numpy as np
 
 from nonsmooth.paths.sampling import Sampling
@@ -35,4 +33,4 @@ def simulate(scene, p, step, paths, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(simulate, threads=snakemake.threads), snakemake)
+    produce(simulate, snakemake, threads=snakemake.threads)

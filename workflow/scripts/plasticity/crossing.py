@@ -1,7 +1,5 @@
 """Probability that the permanent deformation has exceeded one limit, by Monte Carlo."""
 
-from functools import partial
-
 import numpy as np
 
 from nonsmooth.crossing.counting import DESCRIPTIONS
@@ -54,4 +52,4 @@ def crossing(ground, oscillator, limit, duration, outputs, step, paths, seed, th
 
 
 if __name__ == "__main__":
-    produce(partial(crossing, threads=snakemake.threads), snakemake)
+    produce(crossing, snakemake, threads=snakemake.threads)

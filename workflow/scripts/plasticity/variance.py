@@ -1,7 +1,5 @@
 """gamma^2 and kappa of the permanent deformation: all that the asymptotic formulas need."""
 
-from functools import partial
-
 from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from reproduction.jobs import artifact
@@ -35,4 +33,4 @@ def variance(ground, oscillator, tolerance, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(variance, threads=snakemake.threads), snakemake)
+    produce(variance, snakemake, threads=snakemake.threads)

@@ -1,7 +1,5 @@
 """Distances of penalized scenes to their non-smooth limits, and the exponents of n."""
 
-from functools import partial
-
 import numpy as np
 
 from nonsmooth.paths.sampling import Sampling
@@ -118,4 +116,4 @@ def _fitted(n, run, level):
 
 
 if __name__ == "__main__":
-    produce(partial(measure, threads=snakemake.threads), snakemake)
+    produce(measure, snakemake, threads=snakemake.threads)

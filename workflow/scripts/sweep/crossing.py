@@ -1,7 +1,5 @@
 """Threshold crossing probabilities of one scene of the sweep at one p."""
 
-from functools import partial
-
 import numpy as np
 
 from nonsmooth.crossing.counting import (
@@ -45,4 +43,4 @@ def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, 
 
 
 if __name__ == "__main__":
-    produce(partial(crossing, threads=snakemake.threads), snakemake)
+    produce(crossing, snakemake, threads=snakemake.threads)

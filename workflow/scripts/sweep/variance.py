@@ -1,7 +1,5 @@
 """gamma^2 of one scene of the sweep by Monte Carlo."""
 
-from functools import partial
-
 from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
@@ -44,4 +42,4 @@ def variance(scene, times, step, paths, halving_paths, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(variance, threads=snakemake.threads), snakemake)
+    produce(variance, snakemake, threads=snakemake.threads)

@@ -1,7 +1,5 @@
 """The change of figure 2a's Monte Carlo results by halving the time step."""
 
-from functools import partial
-
 from nonsmooth.paths import time_grids
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.moments import step_bias
@@ -37,4 +35,4 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(halving, threads=snakemake.threads), snakemake)
+    produce(halving, snakemake, threads=snakemake.threads)

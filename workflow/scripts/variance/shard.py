@@ -1,7 +1,5 @@
 """One shard of figure 2a's Monte Carlo: sums over its paths."""
 
-from functools import partial
-
 from nonsmooth.paths import time_grids
 from nonsmooth.paths.ensembles import gram
 from nonsmooth.paths.sampling import Sampling
@@ -35,4 +33,4 @@ def shard(scene, first_time, horizon, points, step, part, seed, threads):
 
 
 if __name__ == "__main__":
-    produce(partial(shard, threads=snakemake.threads), snakemake)
+    produce(shard, snakemake, threads=snakemake.threads)
