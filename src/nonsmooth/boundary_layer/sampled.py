@@ -19,6 +19,7 @@ from nonsmooth.paths.ensembles import over_blocks, parallel, require_finite
 from nonsmooth.paths.kernels.compilation import kernel
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks, labelled
+from nonsmooth.paths.moments import bias_over_change
 from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
@@ -208,7 +209,7 @@ def _step_bias(scene, after, cycle, sampling):
 
     runs = parallel(run, blocks(0, sampling.paths), sampling.threads)
     half, whole = np.concatenate(runs, axis=2)
-    factor = 1 / (1 - 2 ** -registry.scheme(scene, sampling.scheme).weak_order(scene))
+    factor = bias_over_change(registry.scheme(scene, sampling.scheme).weak_order(scene))
     # The mean is a ratio of sums over independent paths; its error is that of the linearised ratio.
     parts = _deviations(*whole) - _deviations(*half)
     change = _mean(*whole)[0] - _mean(*half)[0]

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 from nonsmooth.paths.ensembles import coupled, parallel, require_finite
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import blocks
+from nonsmooth.paths.moments import bias_over_change
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
@@ -151,7 +152,7 @@ def bias_of_counts(
     fine, coarse = passage
     paths = len(fine)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
-    factor = 1 / (1 - 2 ** -registry.scheme(scene, "strang").weak_order(scene))
+    factor = bias_over_change(registry.scheme(scene, "strang").weak_order(scene))
     # Even if all paths have the same outcome with both steps, the error is not 0: it is then that
     # of a single path with different outcomes.
     error = np.sqrt(np.maximum(change.var(axis=0), 1 / paths) / paths)

@@ -68,6 +68,11 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
     return result
 
 
+def bias_over_change(order: float) -> float:
+    """Return the bias of a step over what halving it changes, for the weak order q = `order`."""
+    return 1 / (1 - 2**-order)
+
+
 def step_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]:
     """Bias of the variance of D due to the time step, and its standard error.
 
@@ -89,7 +94,7 @@ def step_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]
     # Var D_h - Var D_h/2, and its derivatives with respect to the averages
     value = square - shift * (2 * mean + shift)
     weights = np.stack([0 * mean, -2 * (mean + shift), 0 * mean + 1, -2 * shift], axis=1)
-    factor = 1 / (1 - 2**-order)
+    factor = bias_over_change(order)
     variance = np.einsum("ti,tij,tj->t", weights, covariance, weights)
     return factor * value, factor * np.sqrt(np.maximum(variance, 0.0) / count[:, 0])
 
@@ -99,7 +104,7 @@ def mean_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]
     count = change[:, 0, 0]
     shift = change[:, 0, 1] / count
     spread = np.sqrt(np.maximum(change[:, 1, 1] / count - shift**2, 0.0) / count)
-    factor = 1 / (1 - 2**-order)
+    factor = bias_over_change(order)
     return factor * shift, factor * spread
 
 

@@ -10,7 +10,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.paths import tuning
 from nonsmooth.paths.ensembles import coupled, gram
 from nonsmooth.paths.kernels.random_numbers import labelled
-from nonsmooth.paths.moments import mean_bias, moments, step_bias
+from nonsmooth.paths.moments import bias_over_change, mean_bias, moments, step_bias
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
@@ -89,7 +89,7 @@ def halved_step_bias(scene: Scene, times: ArrayLike, sampling: Sampling) -> dict
     # without common noise: independent runs with the steps and with their halves
     more = replace(sampling, paths=4 * sampling.paths)
     coarse, fine = (moments(gram(scene, times, more.labelled(k), parts=k)) for k in (1, 2))
-    factor = 1 / (1 - 2**-order)
+    factor = bias_over_change(order)
     return {
         name: (
             factor * (coarse[name] - fine[name]),

@@ -21,6 +21,11 @@ def logarithmic(first: float, last: float, count: int) -> np.ndarray:
     return np.round(multiples * unit, 12)
 
 
+def equidistant(last: float, count: int) -> np.ndarray:
+    """Return times from `last` / `count` to `last`, shape (count,)."""
+    return last / count * np.arange(1, count + 1)
+
+
 def equal_steps(times: ArrayLike, step: float) -> list[tuple[int, float]]:
     """Split [0, times[-1]] into runs of equal steps, none longer than `step`, ending at `times`.
 

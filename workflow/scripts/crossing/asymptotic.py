@@ -1,8 +1,7 @@
 """The limit of figure 2b: W_star(b / gamma, T)."""
 
-import numpy as np
-
 from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.paths import time_grids
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
@@ -16,7 +15,7 @@ def limit(scene, threshold, horizon, outputs):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    horizons = time_grids.equidistant(horizon, outputs)
     solution = crossing_probability(scene, threshold, horizons, method="asymptotic")
     return artifact.dataset(
         "Asymptotic threshold crossing probability",

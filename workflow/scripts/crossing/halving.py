@@ -2,6 +2,7 @@
 
 from nonsmooth.crossing.counting import first_passage_shift
 from nonsmooth.errors import SceneError
+from nonsmooth.paths.moments import bias_over_change
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
@@ -26,7 +27,7 @@ def halving(scene, threshold, horizon, p, step, paths, seed, threads):
             f"no path crosses {threshold} sqrt(p) by {horizon} p at p = {p}; "
             "lower crossing.threshold or raise crossing.horizon"
         )
-    factor = 1 / (1 - 2 ** -registry.scheme(scene, "strang").weak_order(scene))
+    factor = bias_over_change(registry.scheme(scene, "strang").weak_order(scene))
     mean = total / count
     return artifact.dataset(
         "Bias of the time step in the first-passage times",

@@ -3,6 +3,7 @@
 import numpy as np
 
 from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.paths import time_grids
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import artifact
@@ -16,7 +17,7 @@ def shard(scene, threshold, horizon, outputs, p, step, part, seed, threads):
     -------
     xarray.Dataset
     """
-    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    horizons = time_grids.equidistant(horizon, outputs)
     first, paths = part
     scene = Scene(**scene)
     sampling = Sampling(step, paths, (seed, f"p = {p}"), first, threads)

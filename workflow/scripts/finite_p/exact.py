@@ -1,8 +1,7 @@
 """Figure 2b without Monte Carlo: W(sqrt(p) b, p T) by the deterministic method."""
 
-import numpy as np
-
 from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.paths import time_grids
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
@@ -16,7 +15,7 @@ def exact(scene, threshold, horizon, outputs, first_time, tolerance, p):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    horizons = time_grids.equidistant(horizon, outputs)
     horizons = horizons[horizons >= first_time * (1 - 1e-9)]
     solution = crossing_probability(
         scene, threshold, horizons, p, method="deterministic", tol=tolerance

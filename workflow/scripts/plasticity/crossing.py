@@ -1,9 +1,8 @@
 """Probability that the permanent deformation has exceeded one limit, by Monte Carlo."""
 
-import numpy as np
-
 from nonsmooth.crossing.counting import DESCRIPTIONS
 from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.paths import time_grids
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 from reproduction.plasticity import yielding_oscillator
@@ -17,7 +16,7 @@ def crossing(ground, oscillator, limit, duration, outputs, step, paths, seed, th
     xarray.Dataset
     """
     scene = yielding_oscillator(ground, oscillator)
-    durations = duration / outputs * np.arange(1, outputs + 1)
+    durations = time_grids.equidistant(duration, outputs)
     found = crossing_probability(
         scene,
         limit,

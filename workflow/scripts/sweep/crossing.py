@@ -8,6 +8,7 @@ from nonsmooth.crossing.counting import (
     first_passage_bias,
     first_passage_counts,
 )
+from nonsmooth.paths import time_grids
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import artifact
@@ -23,7 +24,7 @@ def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, 
     -------
     xarray.Dataset
     """
-    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    horizons = time_grids.equidistant(horizon, outputs)
     scene = Scene(**scene)
     sampling = Sampling(step, paths, (seed, f"sweep, p = {p}"), threads=threads)
     halving = Sampling(step, halving_paths, (seed, f"sweep, halving, p = {p}"), threads=threads)

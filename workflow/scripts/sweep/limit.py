@@ -3,6 +3,7 @@
 import numpy as np
 
 from nonsmooth.crossing.brownian import asymptotic_crossing
+from nonsmooth.paths import time_grids
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
@@ -36,7 +37,7 @@ def limit(variance, solved, scenes, names, horizon, outputs):
         If the observable is not centred, or the bias of the time step not below a hundredth
         of gamma^2.
     """
-    horizons = horizon / outputs * np.arange(1, outputs + 1)
+    horizons = time_grids.equidistant(horizon, outputs)
     rates, errors, curves = [], [], []
     exact = dict(zip(names, solved, strict=True))
     for (name, parameters), run in zip(scenes.items(), variance, strict=True):

@@ -1,8 +1,8 @@
 """One path of a model for several penalizations, all driven by the same Brownian path."""
 
-import numpy as np
 import xarray as xr
 
+from nonsmooth.paths import time_grids
 from nonsmooth.paths.simulation import simulate
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import artifact
@@ -18,7 +18,7 @@ def same_noise(model, potential, damping, n, horizon, step, outputs, seed, path)
         y and x over (n, time); n = inf is the non-smooth limit.
     """
     scene = Scene(model=model, potential=potential, damping=damping, observable="x")
-    times = horizon / outputs * np.arange(1, outputs + 1)
+    times = time_grids.equidistant(horizon, outputs)
     runs = [
         simulate(
             scene.with_n(k),
