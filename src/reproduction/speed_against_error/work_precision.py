@@ -162,7 +162,6 @@ def peer(python: str | Path, script: str | Path) -> Iterator[Callable]:
             return run
 
         yield request
-        process.stdin.close()
 
 
 def front(seconds: np.ndarray, error: np.ndarray) -> list[int]:
