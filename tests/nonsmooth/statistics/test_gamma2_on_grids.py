@@ -20,6 +20,7 @@ def test_two_variables_linear(seed, square):
     assert found.error <= 1e-5 * found.value
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("square", [False, True])
 def test_three_variables_linear(square):
     """The stated error of the alternating solver holds, with and without mirror symmetry."""
@@ -62,6 +63,7 @@ def test_published_value_of_the_obstacle():
     assert abs(found.value - GAMMA2_OBSTACLE) <= found.error + 5e-10
 
 
+@pytest.mark.slow
 def test_non_smooth_limit_of_the_elasto_plastic_model():
     """gamma_n^2 = gamma_inf^2 + c / n + O(n^-2): three finite n agree with n = inf."""
     scene = ns.Scene("elasto_plastic", potential="x**2/2")
@@ -73,6 +75,7 @@ def test_non_smooth_limit_of_the_elasto_plastic_model():
     assert abs(limit.value - extrapolated) <= allowed
 
 
+@pytest.mark.slow
 def test_a_bounded_integral_is_refused():
     """G = y between walls: gamma^2 = 0 cannot have a relative error."""
     with pytest.raises(ToleranceError, match="error of"):

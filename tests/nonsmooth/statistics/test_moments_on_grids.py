@@ -193,6 +193,7 @@ def test_errors_hold_where_they_oscillate():
         assert np.all(apart <= loose[name + "_error"] + tight[name + "_error"])
 
 
+@pytest.mark.slow
 def test_a_change_of_sign_of_the_error_is_not_taken_for_convergence():
     """One small change between levels is not the end: x from 3 to 4 3e-5, 4 to 5 1.3e-4."""
     potential = "x**2/2 + 0.3*cos(2*x)"
