@@ -72,6 +72,8 @@ docs: env .venv-docs/installed ## build the manual, docs/_build/html/index.html
 lock: ## pin the environments anew; needs uv
 	uv pip compile pyproject.toml --extra workflow --extra test --extra lint --extra build --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file environment-lock.txt
 	uv pip compile pyproject.toml --extra docs --extra build --constraint environment-lock.txt --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file docs/environment-lock.txt
+	uv pip compile --group pyproject.toml:checkers --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file workflow/envs/checkers-lock.txt
+	uv pip compile --group pyproject.toml:slurm --constraint environment-lock.txt --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file workflow/envs/slurm-lock.txt
 
 clean: ## remove what was computed, built or drawn
 	find results -mindepth 1 -maxdepth 1 ! -name README.md -exec rm -rf {} +
