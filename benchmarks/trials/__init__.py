@@ -1,0 +1,1 @@
+"""Destructive trials: what happens on bad configurations, bad arguments and damaged files."""
