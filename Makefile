@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: help env paper smoke test lint format docs benchmark requests peers diagrams lock clean
+.PHONY: help env paper smoke test lint format docs benchmark requests peers diagrams checkers lock clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -66,6 +66,13 @@ docs: env .venv-docs/installed ## build the manual, docs/_build/html/index.html
 	$(PYTHON) -m venv .venv-docs
 	.venv-docs/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r docs/environment-lock.txt
 	.venv-docs/bin/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	touch $@
+
+checkers: .venv-checkers/installed ## the environment that checks CF conventions and provenance
+
+.venv-checkers/installed: workflow/envs/checkers-lock.txt
+	$(PYTHON) -m venv .venv-checkers
+	.venv-checkers/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r workflow/envs/checkers-lock.txt
 	touch $@
 
 # all dependencies, for all platforms and Python versions
