@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: help env paper smoke test lint format docs benchmark requests peers diagrams checkers lock clean
+.PHONY: help env paper smoke test lint format docs benchmark requests peers diagrams verify publish checkers crate lock clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -42,6 +42,12 @@ peers: ## the environment of the peers that the diagrams compare with
 	$(PYTHON) -m venv .venv-peers
 	.venv-peers/bin/python -m pip install --disable-pip-version-check --progress-bar off -r benchmarks/peers.txt
 
+verify: env ## compare results/ with what was published, paper/published.json
+	$(BIN)/python -m reproduction.published verify
+
+publish: env ## make results/, of a full run, what verify compares with
+	$(BIN)/python -m reproduction.published publish
+
 # on an idle machine
 diagrams: env ## measure speed against error anew, and refresh the copies in docs/
 	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_gamma2 measure_pathwise measure_cost -- speed_against_error
@@ -74,6 +80,11 @@ checkers: .venv-checkers/installed ## the environment that checks CF conventions
 	$(PYTHON) -m venv .venv-checkers
 	.venv-checkers/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r workflow/envs/checkers-lock.txt
 	touch $@
+
+AGENT ?= $(shell git config user.name)
+crate: checkers ## pack the finished run with its provenance into results/crate.zip
+	.venv-checkers/bin/python workflow/crate.py --agent "$(AGENT)"
+	.venv-checkers/bin/runcrate report results/crate.zip > results/crate.txt
 
 # all dependencies, for all platforms and Python versions
 lock: ## pin the environments anew; needs uv

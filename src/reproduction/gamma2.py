@@ -35,8 +35,9 @@ def compared(name: str, scene: Scene, solved: Mapping, sampled: Mapping) -> tupl
         If the two values contradict each other.
     """
     value, bound = float(solved["gamma2"]), float(solved["gamma2_error"])
-    drawn = {key: float(sampled[key]) for key in ("gamma2", "gamma2_error", "bias")}
-    spread = float(np.hypot(drawn["gamma2_error"], float(sampled["bias_error"])))
+    drawn = {key: float(sampled[key]) for key in ("gamma2", "bias")}
+    errors = {key: float(sampled[f"{key}_error"]) for key in drawn}
+    spread = float(np.hypot(*errors.values()))
     corrected = drawn["gamma2"] - drawn["bias"]
     deviation = (corrected - value) / spread
     if not abs(corrected - value) <= ALLOWED * spread + bound:
@@ -47,7 +48,9 @@ def compared(name: str, scene: Scene, solved: Mapping, sampled: Mapping) -> tupl
     plain = (
         {"scene": name, "variables": scene.dimension, "gamma2": value, "gamma2_error": bound}
         | {f"monte_carlo_{key}": number for key, number in drawn.items()}
-        | {"monte_carlo_corrected": corrected, "spread": spread, "deviation": deviation}
+        | {f"monte_carlo_{key}_standard_error": error for key, error in errors.items()}
+        | {"monte_carlo_corrected": corrected, "monte_carlo_corrected_standard_error": spread}
+        | {"deviation": deviation, "deviation_standard_error": 1.0}
     )
     shown = _decimals(spread) + 1
     cells = {

@@ -1,7 +1,8 @@
 """The numbers that the text of the paper quotes, spelt as they stand there.
 
 `paper_values` collects them; each other public function does so for one section of the paper. All
-numbers are strings. Formulas and numbers in scientific notation are Typst mathematics.
+numbers are strings, and computed ones carry their full value and error (`Quoted`). Formulas and
+numbers in scientific notation are Typst mathematics.
 """
 
 import json
@@ -16,6 +17,14 @@ from nonsmooth.scenes.formulas import parse
 from nonsmooth.scenes.symbols import eta, x
 from reproduction.plasticity import relaxation_time
 from reproduction.rendering.printed import printed_values
+from reproduction.rendering.quoted import (
+    BOUND,
+    ERROR,
+    INTERVAL,
+    STANDARD,
+    Quoted,
+    decimal,
+)
 from reproduction.rendering.tables import penalization, scientific
 
 SIGNIFICANT = 3.0  # standard errors; the text calls the formula too low if it is lower by more
@@ -65,12 +74,16 @@ def variance(
     """Return the errors of the three methods of figure 2a, and how far they agree."""
     scheme = section["finite_difference"]
     deterministic_error = spectral["v_error"] / spectral["time"]
-    sampled = {name: (monte_carlo[name] / monte_carlo["time"])[-1] for name in ("v_error", "bias")}
+    sampled = {
+        name: float((monte_carlo[name] / monte_carlo["time"])[-1])
+        for name in ("v_error", "bias", "bias_error")
+    }
+    gamma2, gamma2_error = float(spectral["gamma2"]), float(spectral["gamma2_error"])
     return {
         "n": _short(section["scene"]["n"]),
-        "gamma2": f"{float(spectral['gamma2']):.15f}",
+        "gamma2": decimal(gamma2, 15, gamma2_error, BOUND),
         "gamma2_error": _bound(spectral["gamma2_error"]),
-        "rounded": f"{float(spectral['gamma2']):.4f}",
+        "rounded": decimal(gamma2, 4, gamma2_error, BOUND),
         "printed": str(printed_values("fig:fpn-cmp-PDE-MC")["asymptotic_value"]),
         "horizon": _short(spectral["time"].values[-1]),
         "deterministic_error": _bound(deterministic_error.max()),
@@ -79,11 +92,14 @@ def variance(
         "half_width": _short(scheme["half_width"]),
         "paths": _count(monte_carlo["paths"]),
         "step": _short(section["monte_carlo"]["step"]),
-        "standard_error": _power(sampled["v_error"]),
-        "bias": _power(sampled["bias"]),
-        "finite_difference_agreement": f"{float(agreement['finite_difference'].max()):.2f}",
-        "monte_carlo_agreement": f"{float(agreement['monte_carlo'].max()):.2f}",
-        "threshold": f"{float(agreement['threshold']):.2f}",
+        "standard_error": _error(sampled["v_error"]),
+        "bias": Quoted(_power(sampled["bias"]), sampled["bias"], sampled["bias_error"], STANDARD),
+        "finite_difference_agreement": decimal(agreement["finite_difference"].max(), 2),
+        # it is in units of `threshold` standard errors
+        "monte_carlo_agreement": decimal(
+            agreement["monte_carlo"].max(), 2, 1 / float(agreement["threshold"])
+        ),
+        "threshold": decimal(agreement["threshold"], 2),
         "false_alarm": _power(agreement["false_alarm"]),
     }
 
@@ -111,21 +127,21 @@ def crossing(check: xr.Dataset, section: Mapping) -> dict:
         "step": _short(section["step"]),
         "p": _list(section["p"]),
         "largest_p": _short(largest["p"]),
-        "distance": f"{float(largest['distance']):.4f}",
-        "standard_error": f"{float(largest['standard_error']):.4f}",
-        "ratio": f"{float(largest['distance'] / largest['standard_error']):.0f}",
+        "distance": decimal(largest["distance"], 4, largest["standard_error"]),
+        "standard_error": decimal(largest["standard_error"], 4, 0, ERROR),
+        "ratio": decimal(largest["distance"] / largest["standard_error"], 0, 1),
     }
 
 
 def finite_p(contained: xr.Dataset, formulas: xr.Dataset, section: Mapping) -> dict:
     """Return constants and errors of the corrected formulas, and how often bands cover curves."""
     constants_error = max(float(formulas[f"{name}_error"]) for name in CONSTANTS)
+    slopes = zip(formulas["slope"].values, formulas["slope_error"].values, strict=True)
     percent = {
-        name: f"{100 * float(contained[name]):.1f}"
-        for name in ("share", "expected", "spread", "least")
-    }
+        name: decimal(100 * contained[name], 1) for name in ("expected", "spread", "least")
+    } | {"share": decimal(100 * contained["share"], 1, 100 * contained["spread"])}
     return (
-        {name: f"{float(formulas[name]):.8f}" for name in CONSTANTS}
+        {name: decimal(formulas[name], 8, formulas[f"{name}_error"], BOUND) for name in CONSTANTS}
         | {
             "constants_error": _bound(constants_error),
             "horizons": _list(section["horizons"]),
@@ -133,10 +149,10 @@ def finite_p(contained: xr.Dataset, formulas: xr.Dataset, section: Mapping) -> d
             "tolerance": _power(section["tolerance"]),
             "first_time": _short(section["first_time"]),
             "fit_from": _short(section["fit_from"]),
-            "slopes": [f"{slope:.2f}" for slope in formulas["slope"].values],
+            "slopes": [decimal(slope, 2, error, BOUND) for slope, error in slopes],
             "rarely": _power(contained["rarely"]),
             "outside": _power(contained["outside"]),
-            "standard_errors": f"{float(contained['standard_errors'].max()):.1f}",
+            "standard_errors": decimal(contained["standard_errors"].max(), 1, 1),
         }
         | percent
         | _formula_errors(formulas)
@@ -148,7 +164,8 @@ def _formula_errors(formulas):
 
     Also the p from which on order 2 is better than order 1.
     """
-    p, distance = formulas["p"].values, formulas["distance"]
+    p, distance, error = (formulas[name] for name in ("p", "distance", "distance_error"))
+    p = p.values
     first, second = (distance.sel(formula=name).values for name in ("order 1", "order 2"))
     resolved = formulas["resolved"].any("horizon")
     known = resolved.sel(formula="order 2").values
@@ -158,8 +175,10 @@ def _formula_errors(formulas):
             {
                 "p": _short(scale),
                 "values": [
-                    _power(distance.sel(formula=name)[k]) if resolved.sel(formula=name)[k] else None
-                    for name in distance["formula"].values
+                    Quoted(_power(distance[i, k]), distance[i, k], error[i, k], BOUND)
+                    if resolved[i, k]
+                    else None
+                    for i in range(formulas.sizes["formula"])
                 ],
             }
             for k, scale in enumerate(p)
@@ -212,6 +231,7 @@ def density(section: Mapping) -> dict:
 
 def theorems(drift_condition: xr.Dataset, section: Mapping) -> dict:
     """Return what table 7 covers, and its smallest margins."""
+    rounding = float(drift_condition["drift_error"].max())
     return {
         "cases": str(drift_condition.sizes["case"]),
         "points": _count(section["points"]),
@@ -220,9 +240,9 @@ def theorems(drift_condition: xr.Dataset, section: Mapping) -> dict:
         "n": [f"{n:,}" for n in section["n"]],
         "potentials": [_formula(U, x) for U in section["potentials"]["obstacle"]],
         "langevin": [_formula(v, eta) for v in section["langevin"]],
-        "drift": f"{float(drift_condition['drift'].min()):.2f}",
-        "printed": f"{-float(drift_condition['forcing_printed'].min()):.2f}",
-        "rounding": _bound(drift_condition["drift_error"].max()),
+        "drift": decimal(drift_condition["drift"].min(), 2, rounding, BOUND),
+        "printed": decimal(-drift_condition["forcing_printed"].min(), 2, rounding, BOUND),
+        "rounding": _bound(rounding),
     }
 
 
@@ -233,13 +253,20 @@ def ergodicity(found: xr.Dataset, section: Mapping, scenes: Mapping) -> dict:
     return {
         "step": _short(section["step"]),
         "enlargement": _short(section["enlargement"]),
-        "deviation": f"{float(deviation.max()):.2f}",
+        "deviation": decimal(deviation.max(), 2),
         "slower": [
             {
                 "model": _words(scenes[name]["scene"]["model"]),
                 "noise": scenes[name]["scene"]["noise"],
-                "far": f"{float(found['far'].sel(scene=name)):.2f}",
-                "gap": f"{float(found['gap'].sel(scene=name)):.2f}",
+            }
+            | {
+                rate: decimal(
+                    found[rate].sel(scene=name),
+                    2,
+                    found[f"{rate}_error"].sel(scene=name),
+                    BOUND,
+                )
+                for rate in ("far", "gap")
             }
             for name in found["scene"].values[slower.values]
         ],
@@ -250,20 +277,29 @@ def limit_theorem(theorem: xr.Dataset, section: Mapping) -> dict:
     """Return extreme distances of all scenes at the largest p, and how fast the maximum's fall."""
     last = theorem.isel(p=-1)
     p = theorem["p"].values[-2:]
-    pair = theorem["maximum"].values[:, -2:]
+    pair, error = (theorem[name].values[:, -2:] for name in ("maximum", "maximum_error"))
     exponents = np.log(pair[:, 1] / pair[:, 0]) / np.log(p[1] / p[0])
+    exponent_errors = np.hypot(*(error / pair).T) / np.log(p[1] / p[0])
+
+    def extreme(find, values, errors, digits):
+        k = find(values)
+        return decimal(values[k], digits, errors[k], INTERVAL)
+
+    final, maximum = (
+        (last[name].values, last[f"{name}_error"].values) for name in ("final", "maximum")
+    )
     return {
         "paths": _count(section["paths"]),
         "p": _list(section["p"]),
         "largest_p": _short(p[1]),
         "before": _short(p[0]),
-        "floor": f"{float(theorem['floor']):.4f}",
+        "floor": decimal(theorem["floor"], 4),
         "false_alarm": _power(theorem["false_alarm"]),
-        "final_largest": f"{float(last['final'].max()):.4f}",
-        "maximum_smallest": f"{float(last['maximum'].min()):.3f}",
-        "maximum_largest": f"{float(last['maximum'].max()):.3f}",
-        "exponent_smallest": f"{exponents.max():.2f}",
-        "exponent_largest": f"{exponents.min():.2f}",
+        "final_largest": extreme(np.argmax, *final, 4),
+        "maximum_smallest": extreme(np.argmin, *maximum, 3),
+        "maximum_largest": extreme(np.argmax, *maximum, 3),
+        "exponent_smallest": extreme(np.argmax, exponents, exponent_errors, 2),
+        "exponent_largest": extreme(np.argmin, exponents, exponent_errors, 2),
     }
 
 
@@ -271,8 +307,10 @@ def rates(found: xr.Dataset, section: Mapping) -> dict:
     """Return the exponents of n with their errors, by scene."""
 
     def exponent(kind, scene):
-        values = (found[f"{kind}_exponent{suffix}"].sel(scene=scene) for suffix in ("", "_error"))
-        return " plus.minus ".join(f"{float(value):.2f}" for value in values)
+        value, error = (
+            float(found[f"{kind}_exponent{suffix}"].sel(scene=scene)) for suffix in ("", "_error")
+        )
+        return Quoted(f"{value:.2f} plus.minus {error:.2f}", value, error, INTERVAL)
 
     return {
         "paths": _count(section["paths"]),
@@ -303,7 +341,9 @@ def plasticity(deformation: xr.Dataset, constants: xr.Dataset, section: Mapping)
     dict
     """
     oscillator, ground = section["oscillator"], section["ground"]
-    gamma2 = float(constants["gamma2"])
+    gamma2, kappa = (
+        (float(constants[name]), float(constants[f"{name}_error"])) for name in ("gamma2", "kappa")
+    )
     runs = [run.squeeze("limit") for _, run in deformation.groupby("limit")]
     relaxation = relaxation_time(oscillator)
     return {
@@ -318,37 +358,55 @@ def plasticity(deformation: xr.Dataset, constants: xr.Dataset, section: Mapping)
         "periods": f"{section['duration'] / (2 * np.pi):.0f}",
         "relaxation": _short(relaxation),
         "relaxations": _short(section["duration"] / relaxation),
-        "gamma2": f"{gamma2:.4f}",
-        "gamma2_error": _bound(constants["gamma2_error"]),
-        "kappa": f"{float(constants['kappa']):.2f}",
-        "kappa_error": f"{float(constants['kappa_error']):.2f}",
-        "limits": [_differences(run, gamma2) for run in runs],
-        "low": f"{max(map(_largest_underestimated, runs)):.2g}",
+        "gamma2": decimal(gamma2[0], 4, gamma2[1]),
+        "gamma2_error": _bound(gamma2[1]),
+        "kappa": decimal(kappa[0], 2, kappa[1]),
+        "kappa_error": decimal(kappa[1], 2, 0, ERROR),
+        "limits": [_differences(run, *gamma2) for run in runs],
+        "low": _low(runs),
         "significant": _short(SIGNIFICANT),
         "code": _example(section),
     }
 
 
-def _differences(run, gamma2):
+def _differences(run, gamma2, gamma2_error):
     """Probabilities of one limit at the end, and where the formulas are off most."""
     duration, difference = run["duration"].values, run["difference"].values
     limit, formula, sampled = float(run["limit"]), run["probability"].values, _sampled(run)
     corrected = run["corrected_difference"].values
-    largest, least = np.argmax(np.abs(difference)), np.argmin(difference)
-    ratio = abs(difference[largest]) / run["difference_error"].values[largest]
+    errors = {str(name): run[name].values for name in run.data_vars if name.endswith("_error")}
+    error = errors["difference_error"]
+    most, least = np.argmax(np.abs(difference)), np.argmin(difference)
+    corrected_most = np.argmax(np.abs(corrected))
+    scaled = limit / np.sqrt(gamma2 * duration[-1])
+
+    def place(k):
+        # within one standard error of the extreme, another duration could be its place
+        near = np.abs(difference - difference[k]) <= error[k]
+        return Quoted(_short(duration[k]), duration[k], np.ptp(duration[near]), STANDARD)
+
+    def there(values, k, own):
+        near = np.abs(difference - difference[k]) <= error[k]
+        return decimal(values[k], 4, own[k] + np.ptp(values[near]))
+
     return {
         "limit": _short(limit),
-        "scaled": f"{limit / np.sqrt(gamma2 * duration[-1]):.2f}",
-        "formula": f"{formula[-1]:.3f}",
-        "corrected": f"{float(run['corrected'][-1]):.3f}",
-        "corrected_largest": f"{corrected[np.argmax(np.abs(corrected))]:+.3f}",
-        "sampled": f"{sampled[-1]:.3f}",
-        "largest": f"{difference[largest]:+.3f}",
-        "largest_ratio": f"{ratio:.0f}",
-        "largest_at": _short(duration[largest]),
-        "low_formula": f"{formula[least]:.4f}",
-        "low_sampled": f"{sampled[least]:.4f}",
-        "low_at": _short(duration[least]),
+        "scaled": decimal(scaled, 2, scaled * gamma2_error / gamma2 / 2),
+        "formula": decimal(formula[-1], 3, errors["probability_error"][-1]),
+        "corrected": decimal(run["corrected"][-1], 3, errors["corrected_error"][-1]),
+        "corrected_largest": decimal(
+            corrected[corrected_most],
+            3,
+            errors["corrected_difference_error"][corrected_most],
+            sign="+",
+        ),
+        "sampled": decimal(sampled[-1], 3, error[-1]),
+        "largest": decimal(difference[most], 3, error[most], sign="+"),
+        "largest_ratio": decimal(abs(difference[most]) / error[most], 0, 1),
+        "largest_at": place(most),
+        "low_formula": there(formula, least, errors["probability_error"]),
+        "low_sampled": there(sampled, least, error),
+        "low_at": place(least),
     }
 
 
@@ -356,9 +414,20 @@ def _sampled(run):
     return run["probability"].values - run["difference"].values
 
 
-def _largest_underestimated(run):
-    """Largest probability that the asymptotic formula gives significantly too low."""
-    too_low = run["difference"].values < -SIGNIFICANT * run["difference_error"].values
+def _low(runs):
+    """Largest probability that the asymptotic formula gives significantly too low.
+
+    Its error is what one standard error more or less of the differences changes in it.
+    """
+    less, low, more = (
+        max(_largest_underestimated(run, SIGNIFICANT + change) for run in runs)
+        for change in (1, 0, -1)
+    )
+    return Quoted(f"{low:.2g}", low, more - less, STANDARD)
+
+
+def _largest_underestimated(run, significant):
+    too_low = run["difference"].values < -significant * run["difference_error"].values
     return max(_sampled(run)[too_low], default=0.0)
 
 
@@ -415,7 +484,11 @@ def _power(value):
 
 
 def _bound(value):
-    return tylax.latex_to_typst(scientific(value, bound=True).strip("$"))
+    return Quoted(tylax.latex_to_typst(scientific(value, bound=True).strip("$")), value, 0, ERROR)
+
+
+def _error(value):
+    return Quoted(_power(value), value, 0, ERROR)
 
 
 def _formula(text, variable):

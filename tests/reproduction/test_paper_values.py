@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from reproduction import paper_values
+from reproduction.rendering.quoted import BOUND, ERROR, ROUNDING, STANDARD, Quoted
 
 
 def formulas():
@@ -21,7 +22,9 @@ def formulas():
         {
             "distance": (("formula", "p"), distance),
             "resolved": (("formula", "p", "horizon"), resolved),
+            "distance_error": (("formula", "p"), np.full((4, 3), 1e-9)),
             "slope": ("formula", [-0.5, -1.0, -1.5, -2.0]),
+            "slope_error": ("formula", [0.01] * 4),
         }
         | constants,
         {"formula": names, "p": [1.0, 10.0, 100.0]},
@@ -55,6 +58,17 @@ def test_bounds_are_rounded_up(corrected):
     assert corrected["constants_error"].startswith("1.1 times")
     assert corrected["kappa"] == "0.50000000"
     assert corrected["share"] == "94.7"
+
+
+def test_numbers_know_their_errors(corrected):
+    """The stated one; half a unit of the last digit where there is none; none for parameters."""
+    kappa, expected = corrected["kappa"], corrected["expected"]
+    assert (kappa.value, kappa.error, kappa.kind) == (0.5, 1e-9, BOUND)
+    assert (expected.value, expected.kind) == (pytest.approx(94.7), ROUNDING)
+    assert expected.error == pytest.approx(0.05)
+    assert (corrected["share"].error, corrected["share"].kind) == (pytest.approx(94.7), STANDARD)
+    assert not isinstance(corrected["tabulated"], Quoted)
+    assert corrected["constants_error"].kind == ERROR
 
 
 def test_scenes_in_which_infinity_is_slower_than_the_gap():
@@ -92,6 +106,9 @@ def test_the_example_of_the_earthquake():
     deformation = xr.Dataset(
         {
             "probability": (over, [[0.01, 0.4, 0.7]]),
+            "probability_error": (over, [[1e-3] * 3]),
+            "corrected_error": (over, [[1e-3] * 3]),
+            "corrected_difference_error": (over, [[0.005] * 3]),
             "difference": (over, [[-0.02, -0.001, 0.1]]),
             "difference_error": (over, [[0.005, 0.005, 0.005]]),
             "corrected": (over, [[0.02, 0.4, 0.6]]),
@@ -107,6 +124,8 @@ def test_the_example_of_the_earthquake():
     assert "limit, duration = 4, 400" in values["code"]
     assert values["n"] == "oo"
     assert values["low"] == "0.03"
+    # it is low by four standard errors, which is not more than one above the significant three
+    assert (values["low"].value, values["low"].error) == pytest.approx((0.03, 0.03))
     (row,) = values["limits"]
     assert (row["largest"], row["largest_ratio"], row["largest_at"]) == ("+0.100", "20", "400")
     assert (row["low_formula"], row["low_sampled"], row["low_at"]) == ("0.0100", "0.0300", "10")

@@ -93,7 +93,7 @@ def test_table_6_has_its_scene_within_its_errors(smoke_run):
     assert len(table) == 1
     exact = ns.asymptotic_variance(FRICTION).value
     row = table.loc["friction_white"]
-    allowed = 5 * math.hypot(row.gamma2_error, row.bias_error) + abs(row.bias)
+    allowed = 5 * math.hypot(row.gamma2_standard_error, row.bias_standard_error) + abs(row.bias)
     assert abs(row.gamma2 - exact) < allowed
     # a larger or a smaller probability than the limit's, but one
     assert table["W_10"].between(0, 1).all()

@@ -41,6 +41,7 @@ rule values:
         printed="paper/printed.yaml",
     output:
         "<results>/paper/values.json",
+        "<results>/paper/numbers.json",
     params:
         variance=config["variance"],
         sweep=config["crossing"],

@@ -2,6 +2,8 @@
 
 `plots`, `tables`
     `draw` and the style of the figures; `typeset` and how numbers are spelled.
+`quoted`
+    `Quoted`, `decimal`: numbers that the text quotes, with their errors.
 `printed`
     `printed_values`, `numbered`: what the paper prints, and how it numbers its equations.
 """

@@ -12,7 +12,7 @@ def time_step(check):
     -------
     plain, cells : pandas.DataFrame
     """
-    plain = check.to_dataframe().reset_index()
+    table = check.to_dataframe().reset_index()
     cells = [
         {
             "$p$": f"${row.p:g}$",
@@ -22,8 +22,11 @@ def time_step(check):
             rf"{scientific(row.limit_bias_error)}",
             r"distance to $W_\star$": f"{row.distance:.4f}",
         }
-        for row in plain.itertuples()
+        for row in table.itertuples()
     ]
+    plain = table.rename(columns=lambda name: name.replace("_error", "_standard_error"))
+    plain = plain.rename(columns={"standard_standard_error": "standard_error"})
+    plain["distance_standard_error"] = plain["standard_error"]
     return plain, pd.DataFrame(cells)
 
 

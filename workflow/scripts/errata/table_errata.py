@@ -43,9 +43,10 @@ def errata(evidence):
         )
     cells = pd.DataFrame(cells)
     cells.attrs["widths"] = WIDTHS
-    return evidence.to_dataframe().reset_index()[
-        ["entry", *TEXTS, *sorted(evidence.data_vars)]
-    ], cells
+    plain = evidence.to_dataframe().reset_index()[["entry", *TEXTS, *sorted(evidence.data_vars)]]
+    for name in ("printed", "mended"):  # it is the error of the comparison
+        plain[f"{name}_error"] = plain["reference_error"]
+    return plain, cells
 
 
 def _number(value, sign="", digits=6):

@@ -35,13 +35,14 @@ def comparison(formulas, monte_carlo, horizon):
         cell = [_scale(p), f"${exact:.6f}$", "--"]
         if p in sampled:
             value, error = (float(sampled[p][q]) for q in ("probability", "probability_error"))
-            row |= {"monte_carlo": value, "monte_carlo_error": error}
+            row |= {"monte_carlo": value, "monte_carlo_standard_error": error}
             cell[-1] = rf"${value:.4f} \pm {error:.4f}$"
         for name in names:
             value, stated = (
                 float(here[q].sel(formula=name)) for q in ("probability", "probability_error")
             )
-            row |= {name: value, f"{name}, error": value - exact, f"{name}, stated": stated}
+            row |= {name: value, f"{name}_error": stated}
+            row |= {f"{name}, off": value - exact, f"{name}, off_error": exact_error}
             cell.append(
                 scientific(value - exact)
                 if here["resolved"].sel(formula=name)

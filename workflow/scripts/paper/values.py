@@ -1,13 +1,19 @@
-"""Collect the numbers that the text of the paper quotes."""
+"""Collect the numbers that the text of the paper quotes: as spelt, and with their errors."""
 
 import json
 
 from reproduction.jobs.files import whole
 from reproduction.jobs.job import inputs, job
 from reproduction.paper_values import paper_values
+from reproduction.rendering.quoted import Quoted, leaves
 
 if __name__ == "__main__":
     with job(snakemake.log[0]):
         result = paper_values(inputs(snakemake), dict(snakemake.params.items()))
-        with whole(snakemake.output[0]) as partial:
-            partial.write_text(json.dumps(result, indent=1), encoding="utf-8")
+        numbers = {
+            name: {"text": text} | vars(text) if isinstance(text, Quoted) else text
+            for name, text in leaves(result).items()
+        }
+        for path, content in zip(snakemake.output, (result, numbers), strict=True):
+            with whole(path) as partial:
+                partial.write_text(json.dumps(content, indent=1), encoding="utf-8")

@@ -20,14 +20,19 @@ def exponents(rates, scenes):
     -------
     plain, cells : pandas.DataFrame
     """
-    names = [
-        f"{kind}_exponent{suffix}" for kind in ("pathwise", "weak") for suffix in ("", "_error")
-    ]
-    plain = rates[names].to_dataframe().reset_index()
-    cells = []
+    plain, cells = [], []
     for name, entry in scenes.items():
         run, scene = rates.sel(scene=name), Scene(**entry["scene"], n=1.0)
         last = run.isel(point=-1)
+        row = {"scene": name, "n_first": entry["n"][0], "n_last": entry["n"][-1]}
+        for kind in ("pathwise", "weak"):
+            row |= {
+                f"{kind}_exponent": float(run[f"{kind}_exponent"]),
+                f"{kind}_exponent_half_interval": float(run[f"{kind}_exponent_error"]),
+                f"{kind}_at_n_last": float(last[kind]),
+                f"{kind}_at_n_last_standard_error": float(last[f"{kind}_error"]),
+            }
+        plain.append(row)
 
         def exponent(kind, run=run):
             value, half = (float(run[f"{kind}_exponent{suffix}"]) for suffix in ("", "_error"))
@@ -45,7 +50,7 @@ def exponents(rates, scenes):
                 "at the largest $n$ ": scientific(last["weak"]),
             }
         )
-    return plain, pd.DataFrame(cells)
+    return pd.DataFrame(plain), pd.DataFrame(cells)
 
 
 if __name__ == "__main__":

@@ -28,15 +28,18 @@ def sweep(variance, crossing, limit, scenes, p):
     plain, cells = [], []
     for k, (name, parameters) in enumerate(scenes.items()):
         scene = Scene(**parameters["scene"])
-        gamma2 = {key: float(variance[k][key]) for key in variance[k].data_vars}
+        gamma2 = {
+            key.replace("_error", "_standard_error"): float(variance[k][key])
+            for key in variance[k].data_vars
+        }
         last = [run.isel(horizon=-1) for run in crossing[k * len(p) : (k + 1) * len(p)]]
         star = limit.sel(scene=name).isel(horizon=-1)
         row = {"scene": name, "threshold": parameters["threshold"]} | gamma2
         for scale, run in zip(p, last, strict=True):
             row[f"W_{scale:g}"] = float(run["probability"])
-            row[f"W_{scale:g}_error"] = float(run["probability_error"])
+            row[f"W_{scale:g}_standard_error"] = float(run["probability_error"])
             row[f"W_{scale:g}_bias"] = float(run["bias"])
-            row[f"W_{scale:g}_bias_error"] = float(run["bias_error"])
+            row[f"W_{scale:g}_bias_standard_error"] = float(run["bias_error"])
         row["W_star"] = float(star["probability"])
         row["W_star_error"] = float(star["probability_error"])
         plain.append(row)

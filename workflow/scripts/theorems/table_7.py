@@ -29,12 +29,14 @@ def smallest(drift_condition):
     kinds = table.groupby(["model", "noise", "v"], sort=False)
     plain = kinds[[*COLUMNS, "coefficient"]].min()
     plain.insert(0, "scenes", kinds.size())
-    plain["rounding"] = kinds["drift_error"].max()
+    for name in COLUMNS:
+        plain[f"{name}_error"] = kinds[f"{name}_error"].max()
+    plain["coefficient_error"] = plain["coefficient"] * plain["drift_error"]
     plain = plain.reset_index()
     cells = []
     for row in plain.itertuples():
         shown = {
-            numbered(label): _margin(getattr(row, name), row.rounding)
+            numbered(label): _margin(getattr(row, name), row.drift_error)
             for name, label in COLUMNS.items()
         }
         if row.noise != "hamiltonian":
