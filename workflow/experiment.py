@@ -32,6 +32,7 @@ def check(config: dict) -> None:
             raise ConfigError(f"config: {key!r} is not a number; give it one")
     _check_dry_friction(config)
     _check_times(config["variance"])
+    _check_some_finite("convergence.n", config["convergence"]["n"])
     _check_increasing(config)
     _check_formulas(config)
     _check_names(config)
@@ -84,6 +85,12 @@ def _check_times(variance):
             f"config: 'variance.finite_difference.time_step' = {step}: twice it must divide "
             f"variance.first_time/10 = {unit:g}; change either"
         )
+
+
+def _check_some_finite(key, numbers):
+    """Refuse n = inf alone, for which the paper's scheme is not made."""
+    if not finite(numbers):
+        raise ConfigError(f"config: '{key}' = {numbers} needs a finite n; add one")
 
 
 def _divides(part, whole):

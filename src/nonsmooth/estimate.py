@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from nonsmooth.errors import ToleranceError
 
 
@@ -26,6 +29,23 @@ class Estimate:
     seconds: float
 
 
+def not_negative(value: ArrayLike, error: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Take negative values of what cannot be negative to 0.
+
+    Parameters
+    ----------
+    value, error : array_like
+
+    Returns
+    -------
+    value, error : numpy.ndarray
+        0 is nearer to the truth than a negative value, so that the error still holds; where it is
+        smaller than what a value is below 0, it is at least that.
+    """
+    value, error = np.asarray(value), np.asarray(error)
+    return np.maximum(value, 0.0), np.maximum(error, -value)
+
+
 def require(met: bool, value: float, error: float, tol: float, cure: str = "loosen tol") -> None:
     """Raise an error unless gamma^2 was found to a relative tolerance.
 
@@ -46,7 +66,9 @@ def require(met: bool, value: float, error: float, tol: float, cure: str = "loos
         With the best value and its error.
     """
     if not met:
+        if not value > error:
+            cure += " or, if int_0^t g stays bounded, so that gamma^2 = 0, choose another g"
         raise ToleranceError(
-            f"gamma^2 = {value:.16g} has an error of {error:.1e}, above tol = {tol:g} relative; "
-            f"{cure}"
+            f"gamma^2 = {max(value, 0.0):.16g} has an error of {error:.1e}, above tol = {tol:g} "
+            f"relative; {cure}"
         )

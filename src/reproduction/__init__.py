@@ -1,15 +1,19 @@
 """What only the paper needs: its results as files, figures and tables, and its examples.
 
 The workflow's scripts call this package, and this package calls the library `nonsmooth`. The
-packages `jobs` and `rendering` and the module `errors` serve all topics of the paper; every other
-package or module is one topic.
+packages `jobs` and `rendering` and the modules `agreement` and `errors` serve all topics of the
+paper; every other package or module is one topic.
 
 `jobs`
     How a script runs, and the files that it reads and writes.
 `rendering`
     Figures, tables and what the paper prints.
+`agreement`
+    `deviation`, `require_telling`: whether a method agrees with the reference beside it.
 `errors`
     Errors of the workflow: `ConfigError`, `ArtifactError`, `CheckError`.
+`convergence`
+    `printed_in_table_4`: the values that the paper prints for a scene and a horizon.
 `gamma2`
     `compared`: the asymptotic variance by two methods, side by side.
 `finite_p`

@@ -1,5 +1,8 @@
 """The errors of the workflow: each message is one line naming the offender and the cure."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from nonsmooth.errors import NonsmoothError
 
 
@@ -13,3 +16,23 @@ class ArtifactError(NonsmoothError):
 
 class CheckError(NonsmoothError):
     """Results that contradict each other."""
+
+
+@contextmanager
+def configured_by(section: str) -> Iterator[None]:
+    """Name the section of the configuration in the errors of the body, which it causes.
+
+    Parameters
+    ----------
+    section : str
+        Dotted key.
+
+    Raises
+    ------
+    NonsmoothError
+        That of the body, with the section in front of its message.
+    """
+    try:
+        yield
+    except NonsmoothError as error:
+        raise type(error)(f"{section}: {error}") from error

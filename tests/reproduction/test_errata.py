@@ -83,7 +83,7 @@ def test_known_values(evidence):
 def test_printed_numbers_are_the_papers(evidence):
     """They agree with those of paper/printed.yaml."""
     printed = yaml.safe_load((ROOT / "paper" / "printed.yaml").read_text(encoding="utf-8"))
-    table = printed["tab:convergence-vng-n"]
+    table = printed["tab:convergence-vng-n"]["values"]
     assert evidence["4"].printed == printed["fig:fpn-cmp-PDE-MC"]["asymptotic_value"]
     assert [evidence[label].printed for label in ("5a", "5b", "5c")] == [
         table[n] for n in (100, 2, 50)

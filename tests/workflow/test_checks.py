@@ -10,6 +10,7 @@ from scipy.special import ndtr, ndtri
 
 from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.counting import crossing_estimate
+from nonsmooth.errors import SceneError
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins
@@ -20,6 +21,9 @@ from support import ROOT
 
 TAU = np.array([0.1, 1.0, 10.0])
 SCRIPTS = ROOT / "workflow" / "scripts"
+PRINTED = {"model": "friction", "noise": "white"}
+agreement = runpy.run_path(str(SCRIPTS / "convergence" / "check.py"))["agreement"]
+scheme = runpy.run_path(str(SCRIPTS / "convergence" / "finite_difference.py"))["paper_scheme"]
 deviations = runpy.run_path(str(SCRIPTS / "variance" / "check.py"))["deviations"]
 evaluate = runpy.run_path(str(SCRIPTS / "errata" / "errata.py"))["evaluate"]
 search = runpy.run_path(str(SCRIPTS / "theorems" / "drift_condition.py"))["search"]
@@ -65,6 +69,64 @@ def test_contradictions_fail(changes, message):
     """Each method, a value that is not a number, and a bias that dominates."""
     with pytest.raises(CheckError, match=message):
         deviations(*three_methods(**changes))
+
+
+def test_useless_finite_differences_fail():
+    """They agree with the reference within errors as large as v/tau."""
+    spectral, difference, monte_carlo = three_methods()
+    difference["v_error"] += 0.5
+    with pytest.raises(CheckError, match=r"stated error .* enlarge variance\.finite_diff"):
+        deviations(spectral, difference, monte_carlo)
+
+
+def table_4(**changes):
+    """Artifacts of table 4 for n = 2 and infinity; the value of n = 2 is the printed one."""
+
+    def column(n, value, error):
+        found = {"n": n, "v_over_time": value, "v_over_time_error": error}
+        return xr.Dataset(found)
+
+    spectral = [column(np.inf, 0.13676692, 1e-11), column(2.0, 0.17446659, 1e-11)]
+    values = {"v_over_time": 0.17446, "v_over_time_error": 1e-5} | changes
+    return spectral, [column(2.0, values["v_over_time"], values["v_over_time_error"])]
+
+
+def test_table_4_passes():
+    """Finite differences within their error, and one printed value."""
+    result = agreement(*table_4(), PRINTED, 100)
+    assert float(result["finite_difference"][0]) == pytest.approx(0.659, rel=1e-3)
+    assert int(result["printed"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"v_over_time": 0.17448}, r"at n = 2; enlarge convergence\.finite_difference\.half_width"),
+        ({"v_over_time": 5.3e-9, "v_over_time_error": 9.8e-9}, "deviates .* at n = 2; enlarge"),
+        ({"v_over_time": np.nan}, "deviates .* at n = 2"),
+        ({"v_over_time": 0.1, "v_over_time_error": 0.1}, "stated error .* is 57%"),
+    ],
+)
+def test_wrong_finite_differences_of_table_4_fail(changes, message):
+    """Off, on a far too narrow domain, not a number, and of an error that says nothing."""
+    with pytest.raises(CheckError, match=message):
+        agreement(*table_4(**changes), PRINTED, 100)
+
+
+def test_a_value_that_the_paper_does_not_print_fails():
+    """It is compared where scene and horizon are the paper's, and only there."""
+    spectral, difference = table_4(v_over_time=0.17447)
+    spectral[1]["v_over_time"] += 3e-6
+    with pytest.raises(CheckError, match=r"what table 4 prints deviates .* at n = 2"):
+        agreement(spectral, difference, PRINTED, 100)
+    for other in ((PRINTED, 50), (PRINTED | {"damping": 2.0}, 100)):
+        assert int(agreement(spectral, difference, *other)["printed"]) == 0
+
+
+def test_a_narrow_domain_names_its_key():
+    """Table 4 with half_width = 0.01 is refused before it has a number."""
+    with pytest.raises(SceneError, match=r"convergence\.finite_difference: half_width = 0\.01"):
+        scheme(PRINTED, 2.0, 100, 0.01, 1001, 0.05)
 
 
 def crossings(bias=5e-4, bias_error=4e-4, gamma2=1e-3):

@@ -24,8 +24,8 @@ rule convergence_finite_difference:
         "../scripts/convergence/finite_difference.py"
 
 
-rule table_4:
-    """Typeset table 4"""
+rule check_convergence:
+    """Check that both methods of table 4 agree, and with what the paper prints"""
     input:
         spectral=expand(
             "<results>/convergence/spectral/n={n}.nc", n=map(label, config["convergence"]["n"])
@@ -36,6 +36,23 @@ rule table_4:
         ),
         printed="paper/printed.yaml",
     output:
+        "<results>/convergence/check.nc",
+    params:
+        **settings("convergence", "scene", "horizon"),
+    script:
+        "../scripts/convergence/check.py"
+
+
+rule table_4:
+    """Typeset table 4"""
+    input:
+        spectral=rules.check_convergence.input.spectral,
+        finite_difference=rules.check_convergence.input.finite_difference,
+        check=rules.check_convergence.output[0],
+        printed="paper/printed.yaml",
+    output:
         table("table_4"),
+    params:
+        **settings("convergence", "scene", "horizon"),
     script:
         "../scripts/convergence/table_4.py"

@@ -31,6 +31,7 @@ rule values:
         formulas=rules.finite_p_formulas.output[0],
         limit=rules.sweep_limit.output[0],
         convergence=rules.table_4.input.spectral,
+        convergence_check=rules.check_convergence.output[0],
         drift_condition=rules.drift_condition.output[0],
         ergodicity=rules.ergodicity.output[0],
         errata=rules.errata.output[0],

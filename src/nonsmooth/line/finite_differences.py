@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgttrf, dgttrs
 
 from nonsmooth.errors import SceneError
+from nonsmooth.line import quadrature, tuning
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
@@ -133,8 +134,9 @@ def moments_with_error(
     with twice the mesh width on half the domain. The scheme is of first order in time: the first
     difference is the leading term of the error. In space it is at least of first order, wherever
     the kinks lie: the second difference bounds the error. The error of the domain falls faster
-    than exponentially with L: the third difference bounds it. The sum of the differences is
-    doubled to cover terms of higher order.
+    than exponentially with L once the domain holds nearly all of the stationary law: the third
+    difference then bounds it, and where the domain does not, the scheme is refused. The sum of the
+    differences is doubled to cover terms of higher order.
 
     Parameters
     ----------
@@ -149,8 +151,9 @@ def moments_with_error(
     Raises
     ------
     SceneError
-        As for `moments`, for each of the grids.
+        As for `moments`, for each of the grids; or if the domain leaves out too much.
     """
+    _require_wide(scene, half_width)
     fine = np.array(moments(scene, times, half_width, nodes, time_step))
     slow = np.array(moments(scene, times, half_width, nodes, 2 * time_step))
     wide = np.array(moments(scene, times, half_width, (nodes + 1) // 2, time_step))
@@ -158,3 +161,18 @@ def moments_with_error(
     error = 2 * (np.abs(slow - fine) + np.abs(wide - fine) + np.abs(near - wide))
     error += np.finfo(float).eps
     return (*fine, *error)
+
+
+def _require_wide(scene, half_width):
+    """Refuse a domain that leaves out too much of the stationary law or of the variance of g."""
+    solution = quadrature.solved(scene).integrals
+    elements = solution.elements
+    outside = np.abs(elements.points) > half_width
+    spread = elements.mass * (elements.g - solution.mean) ** 2
+    # a constant g has no spread
+    shares = [part[outside].sum() / part.sum() for part in (elements.mass, spread) if part.any()]
+    if max(shares) > tuning.FINITE_DIFFERENCES.outside:
+        raise SceneError(
+            f"half_width = {half_width:g} leaves {max(shares):.0%} of the stationary law or of the "
+            "variance of g outside, so that the error is not known; increase half_width"
+        )

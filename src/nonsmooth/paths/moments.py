@@ -61,6 +61,8 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
             weights = weights - np.concatenate([np.zeros(3), slope])
             result[name][k] = value - slope @ a[3:]
             result[f"{name}_error"][k] = np.sqrt(max(weights @ c @ weights, 0.0) / count)
+    # what the control variates take off may be more than there is
+    result["variance"] = np.maximum(result["variance"], 0.0)
     first = int(np.argmax(moved))
     square = gram[first, 2, 2] / gram[first, 1, 1]  # the size of D^2: E D^4 / E D^2
     result["mean_error"][:first] = np.sqrt(square) / paths[:first]

@@ -41,10 +41,10 @@ def asymptotic_variance(
     Returns
     -------
     Estimate
-        Deterministic for the state y with white noise by closed form (dry friction, g = y) or
-        quadrature, in every other scene by spectral elements. By Monte Carlo the error is the
-        bias of the time step and the standard error together; `tol` bounds the bias and three
-        standard errors.
+        Exactly 0 if g is constant. Deterministic for the state y with white noise by closed form
+        (dry friction, g = y) or quadrature, in every other scene by spectral elements. By Monte
+        Carlo the error is the bias of the time step and the standard error together; `tol` bounds
+        the bias and three standard errors.
 
     Raises
     ------
@@ -58,6 +58,8 @@ def asymptotic_variance(
         raise SceneError(
             f"gamma^2 has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
         )
+    if not scene.state:
+        return Estimate(0.0, 0.0, "g is constant", time.perf_counter() - began)
     failed = []
     for name in _fastest_first(scene, tol) if method is None else [method]:
         try:

@@ -102,7 +102,9 @@ def gamma2_by_uniform_refinement(scene: Scene, tol: float) -> Refined:
         return value, rounding / 2 * tol * abs(value)
 
     return uniform_refinement.refined(
-        fitted(scene, depth_for(tol), 1), solve, lambda error, value: error / (tol * abs(value))
+        fitted(scene, depth_for(tol), 1),
+        solve,
+        lambda error, value: error / (tol * value) if value > 0 else math.inf,
     )
 
 
@@ -142,7 +144,7 @@ def gamma2_by_combination(scene: Scene, tol: float) -> tuple[float, float]:
     )
     rest = gap / ((10 if elastic else 100) - 1)
     value, error = value + rest, error + (0.2 if elastic else 1.0) * abs(rest)
-    require(error <= tol * abs(value), value, error, tol)
+    require(error <= tol * value, value, error, tol)
     return value, error
 
 
@@ -171,7 +173,7 @@ def _combined(scene, tol):
     _enlarge(combination, error, tol, grid_tuning.TENSOR_GRIDS.largest[count])
     value, reached = combination.value, error(combination)
     best = grid(combination.dearest())
-    if reached > tol * abs(value):
+    if not reached <= tol * value:
         _refuse(scene, best, value, reached, tol, accuracy)
     return value, reached, best, accuracy
 
@@ -179,7 +181,7 @@ def _combined(scene, tol):
 def _enlarge(combination, error, tol, largest):
     """Add grids to a combination until its error is small enough, or nothing affordable is left."""
     left = tuning.GAMMA2_ON_GRIDS.work * largest
-    while not error(combination) <= tol * abs(combination.value):
+    while not error(combination) <= tol * combination.value:
         try:
             cost = combination.refine(min(largest, left))
         except ToleranceError:  # a finer grid on which the iteration does not converge

@@ -13,8 +13,10 @@ import xarray as xr
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
 from scipy.integrate import quad
+from scipy.ndimage import maximum_filter1d
 
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.estimate import not_negative
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.mesh.box import half_widths
 from nonsmooth.grids.mesh.edges import kinks
@@ -49,7 +51,8 @@ def invariant_density(
     xarray.Dataset
         `density_y` and so on over the points of each variable, and the joint density of the last
         two variables of the state, `density_y_x` or `density_eta_y`. Each has an error
-        (`density_y_error`), the largest difference between two grids. Where there is a closed form
+        (`density_y_error`), the largest difference between two grids. Solutions on grids oscillate
+        about 0 where a density is small; negative values become 0. Where there is a closed form
         (dry friction and obstacles with white noise), it is the error of the normalisation.
 
     Raises
@@ -74,7 +77,12 @@ def invariant_density(
     found, difference = _refined(
         scene, grid, tol, lambda grid: densities_on(scene, grid, names, points, accuracy)
     )
-    return _dataset(found, {key: np.max(difference[key]) for key in found}, points)
+    clipped = {key: not_negative(found[key], difference[key]) for key in found}
+    return _dataset(
+        {key: value for key, (value, _) in clipped.items()},
+        {key: np.max(error) for key, (_, error) in clipped.items()},
+        points,
+    )
 
 
 def _equidistant(ends):
@@ -213,7 +221,8 @@ def bin_averages(
     Returns
     -------
     dict
-        Name -> (averages, errors), of each bin.
+        Name -> (averages, errors), of each bin. On grids the difference of two of them oscillates
+        from bin to bin; the error of a bin is the largest of those near it.
 
     Raises
     ------
@@ -230,7 +239,14 @@ def bin_averages(
     found, error = _refined(
         scene, grid, tol, lambda grid: _averages_on(scene, grid, edges, accuracy)
     )
-    return {name: (found[name], error[name]) for name in found}
+    clipped = {name: not_negative(found[name], error[name]) for name in found}
+    return {name: (value, _largest_near(error)) for name, (value, error) in clipped.items()}
+
+
+def _largest_near(error):
+    """Take the largest error of the bins around each, a twentieth of all to each side."""
+    reach = math.ceil(len(error) * tuning.INVARIANT_DENSITY.near)
+    return maximum_filter1d(error, 2 * reach + 1, mode="nearest")
 
 
 def _averages_of_closed_form(scene, closed, edges):

@@ -57,6 +57,9 @@ class InvariantDensity:
     gauss: int = 16  # chosen: Gauss points for each piece of a bin
     fewer: int = 10  # chosen: Gauss points of a second quadrature, to see the error of the first
     residual: float = 0.05  # chosen: residual of the iteration, relative to the tolerance
+    # chosen: part of all bins whose errors count for a bin, on either side; the difference of two
+    # grids changes its sign several times over the bins
+    near: float = 0.05
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.estimate import not_negative
 from nonsmooth.line import eigenfunctions
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.refine import until_agreement
@@ -48,6 +49,7 @@ def variance(
         `w`, `v` and their errors `w_error`, `v_error` over `time`, with the method among the
         attributes. One variable is solved by an eigenfunction expansion, two by
         `moments_on_grids.moments`; the errors are the changes by the last refinement, and rounding.
+        For a constant g all are 0.
         By Monte Carlo they are the bias of the time step and the standard error together; `tol`
         bounds the bias and three standard errors.
 
@@ -64,6 +66,10 @@ def variance(
     if method not in (None, "deterministic", "monte_carlo"):
         raise SceneError(
             f"v(tau) has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
+        )
+    if not scene.state:  # g is constant
+        return _dataset(
+            times, np.zeros((2, len(times))), np.zeros((2, len(times))), "deterministic"
         )
     solve = _solver(scene)
     if method == "deterministic" and solve is None:
@@ -90,6 +96,7 @@ def variance(
 
 def _dataset(times, found, error, method):
     (w, v), (w_error, v_error) = found, error
+    v, v_error = not_negative(v, v_error)
     variables = {"w": w, "w_error": w_error, "v": v, "v_error": v_error}
     return xr.Dataset(
         {name: ("time", values) for name, values in variables.items()},

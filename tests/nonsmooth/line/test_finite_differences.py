@@ -75,6 +75,27 @@ def test_intensity_of_the_noise_enters_squared(reference):
 
 
 @pytest.mark.parametrize(
+    ("damping", "widths"), [(10.0, [0.6, 0.8]), (1.0, [1.5, 2.0]), (0.1, [2.7, 3.0, 4.0])]
+)
+def test_the_error_includes_that_of_the_domain(damping, widths):
+    """On the narrowest domains that are taken, where it is what matters."""
+    scene = ns.Scene("friction", n=10, damping=damping)
+    exact = ns.variance(scene, TAU)["v"].values
+    for half_width in widths:
+        nodes = 1 + 8 * round(40 * half_width / min(1, damping**-0.5))
+        _, v, _, error = finite_differences.moments_with_error(scene, TAU, half_width, nodes, 0.01)
+        assert np.all(np.abs(v - exact) <= error)
+
+
+@pytest.mark.parametrize(("damping", "half_width"), [(1.0, 0.01), (1.0, 1.0), (0.1, 2.0)])
+def test_a_domain_that_is_too_narrow_is_refused(damping, half_width):
+    """Where v is far too small on the domain and on its half, their difference says nothing."""
+    scene = ns.Scene("friction", n=10, damping=damping)
+    with pytest.raises(SceneError, match=r"outside, .* increase half_width"):
+        finite_differences.moments_with_error(scene, TAU, half_width, 801, 0.01)
+
+
+@pytest.mark.parametrize(
     ("arguments", "cure"),
     [
         ({"nodes": 400}, "add one"),

@@ -8,7 +8,7 @@ from reproduction.rendering.printed import numbered, printed_values
 
 def test_values_of_table_4():
     """They are read as the paper prints them."""
-    assert printed_values("tab:convergence-vng-n")[100] == 0.136784
+    assert printed_values("tab:convergence-vng-n")["values"][100] == 0.136784
 
 
 def test_labels_become_the_numbers_that_readers_see():

@@ -2,6 +2,7 @@
 
 from nonsmooth.line.finite_differences import moments_with_error
 from nonsmooth.scenes.scene import Scene
+from reproduction.errors import configured_by
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 
@@ -14,7 +15,8 @@ def paper_scheme(scene, n, horizon, half_width, nodes, time_step):
     xarray.Dataset
     """
     scene = Scene(**scene, n=n)
-    _, v, _, error = moments_with_error(scene, [horizon], half_width, nodes, time_step)
+    with configured_by("convergence.finite_difference"):
+        _, v, _, error = moments_with_error(scene, [horizon], half_width, nodes, time_step)
     return artifact.dataset(
         "v(0, T)/T by the paper's finite differences",
         f"{scene}, T = {horizon}",

@@ -2,18 +2,27 @@
 
 import pandas as pd
 
-from reproduction.rendering.printed import printed_values
+from reproduction.convergence import printed_in_table_4
 from reproduction.rendering.tables import penalization, scientific, sorted_by, typeset
 
 
-def convergence(spectral, finite_difference):
+def convergence(spectral, finite_difference, check, scene, horizon):
     """Tabulate, for each n, the printed value and ours.
+
+    Parameters
+    ----------
+    spectral, finite_difference : list of xarray.Dataset
+        One per n.
+    check : xarray.Dataset
+        They agree, or it would not exist.
+    scene : dict
+    horizon : float
 
     Returns
     -------
     plain, cells : pandas.DataFrame
     """
-    printed = printed_values("tab:convergence-vng-n")
+    printed = printed_in_table_4(scene, horizon)
     scheme = {float(run["n"]): run for run in finite_difference}
     plain, cells = [], []
     for run in sorted_by("n", spectral):

@@ -3,17 +3,24 @@
 import numpy as np
 from scipy.special import ndtri
 
+from reproduction.agreement import deviation, require_telling
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 
 FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although nothing is wrong
+CURES = {
+    "finite_difference": "enlarge variance.finite_difference.half_width or nodes, or reduce "
+    "time_step; else look for a mistake",
+    "monte_carlo": "reduce variance.monte_carlo.step; else look for a mistake",
+}
 
 
 def deviations(spectral, finite_difference, monte_carlo):
     """Compare the methods at every plotted tau, in units of what is allowed.
 
-    The finite differences may deviate by the sum of both error bounds. Monte Carlo may, once its
+    The finite differences may deviate by the sum of both error bounds, and theirs must be small
+    against the largest v/tau. Monte Carlo may, once its
     estimated bias is subtracted, deviate by z standard errors, which are those of the sample and of
     the bias together. By Bonferroni's inequality over all tau, z follows from the probability of a
     false alarm. Besides, the bias of the time step must not be significantly above the standard
@@ -26,7 +33,7 @@ def deviations(spectral, finite_difference, monte_carlo):
     Raises
     ------
     CheckError
-        If a deviation exceeds what is allowed.
+        If a deviation exceeds what is allowed, or the errors of the finite differences are large.
     """
     tau, v = spectral["time"].values, spectral["v"].values
     z = -ndtri(FALSE_ALARM / 2 / len(tau))
@@ -38,17 +45,16 @@ def deviations(spectral, finite_difference, monte_carlo):
         "finite_difference": finite_difference["v"].values,
         "monte_carlo": (monte_carlo["v"] - monte_carlo["bias"]).values,
     }
+    places = [f"tau = {time:g}" for time in tau]
     ratio = {
-        name: np.abs(values[name] - v) / (allowed[name] + spectral["v_error"].values)
-        for name in values
+        name: deviation(
+            name, places, value, v, allowed[name] + spectral["v_error"].values, CURES[name]
+        )
+        for name, value in values.items()
     }
-    for name, deviation in ratio.items():
-        worst = np.argmax(deviation)
-        if not deviation[worst] <= 1:
-            raise CheckError(
-                f"{name} deviates from the spectral elements by {deviation[worst]:.2f} times its "
-                f"allowed error at tau = {tau[worst]:g}; refine it or look for a mistake"
-            )
+    require_telling(
+        "finite_difference", allowed["finite_difference"] / tau, v / tau, CURES["finite_difference"]
+    )
     bias, bias_error = np.abs(monte_carlo["bias"].values), monte_carlo["bias_error"].values
     if np.any(bias - z * bias_error > monte_carlo["v_error"].values):
         raise CheckError(
@@ -58,7 +64,7 @@ def deviations(spectral, finite_difference, monte_carlo):
         "Agreement of the three methods",
         "deviation from the spectral elements divided by the allowed error; all at most 1",
         {"time": ("time", tau, "tau")},
-        {name: ("time", d, f"relative deviation of {name}") for name, d in ratio.items()}
+        {name: ("time", r, f"relative deviation of {name}") for name, r in ratio.items()}
         | {
             "threshold": ((), z, "allowed Monte Carlo deviation in standard errors"),
             "false_alarm": ((), FALSE_ALARM, "probability of exceeding the threshold by chance"),

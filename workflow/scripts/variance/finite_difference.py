@@ -3,6 +3,7 @@
 from nonsmooth.line.finite_differences import moments_with_error
 from nonsmooth.paths import time_grids
 from nonsmooth.scenes.scene import Scene
+from reproduction.errors import configured_by
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 
@@ -16,7 +17,8 @@ def paper_scheme(scene, first_time, horizon, points, half_width, nodes, time_ste
     """
     scene = Scene(**scene)
     tau = time_grids.logarithmic(first_time, horizon, points)
-    _, v, _, v_error = moments_with_error(scene, tau, half_width, nodes, time_step)
+    with configured_by("variance.finite_difference"):
+        _, v, _, v_error = moments_with_error(scene, tau, half_width, nodes, time_step)
     return artifact.dataset(
         "Variance of the integrated observable by the paper's finite differences",
         f"v(0, tau) of {scene}",
