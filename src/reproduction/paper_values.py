@@ -111,7 +111,7 @@ def convergence(
 ) -> dict:
     """Return the largest errors and deviations of table 4, and the sizes of the paper's scheme."""
     return {
-        "finite_difference_agreement": f"{float(agreement['finite_difference'].max()):.2f}",
+        "finite_difference_agreement": decimal(agreement["finite_difference"].max(), 2),
         "horizon": _short(horizon),
         "v_over_time_error": _bound(max(run["v_over_time_error"] for run in solutions)),
         "gamma2_error": _bound(max(run["gamma2_error"] for run in solutions)),

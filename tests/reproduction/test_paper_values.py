@@ -1,6 +1,8 @@
 """The numbers of the text are those of the artifacts, spelt as they stand there."""
 
 import ast
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -69,6 +71,12 @@ def test_numbers_know_their_errors(corrected):
     assert (corrected["share"].error, corrected["share"].kind) == (pytest.approx(94.7), STANDARD)
     assert not isinstance(corrected["tabulated"], Quoted)
     assert corrected["constants_error"].kind == ERROR
+
+
+def test_no_computed_number_is_spelt_without_its_error():
+    """Numbers of artifacts are spelt by `decimal` or `Quoted`."""
+    source = Path(paper_values.__file__).read_text(encoding="utf-8")
+    assert not re.findall(r'f"\{float\(.*:[+]?\.\d', source)
 
 
 def test_scenes_in_which_infinity_is_slower_than_the_gap():

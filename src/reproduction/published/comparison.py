@@ -67,8 +67,10 @@ def compare(published: Record, found: Record, results: str = "results") -> Compa
         for name in sorted(left | right, key=_in_order):
             pair = left.get(name), right.get(name)
             states.append(state(*pair, z))
-            if states[-1] == OFF:
+            if states[-1] == OFF and right:
                 outcome.off.append(f"{section}, {name}: published {_spelt(*pair)}")
+        if not right:
+            outcome.off.append(f"{section} is missing")
     for name, published_one in published.artifacts.items():
         found_one = found.artifacts.get(name, {"sha256": MISSING})
         same = found_one["sha256"] == published_one["sha256"]

@@ -105,6 +105,15 @@ def test_artifacts_are_identical_different_or_missing():
     assert outcome.off == ["results/c is missing"]
 
 
+def test_a_table_that_is_missing_is_one_line():
+    """Not one for each of its numbers, which are off nevertheless."""
+    found = record()
+    del found.sections["table_6"]
+    outcome = compare(record(), found)
+    assert outcome.off == ["table_6 is missing"]
+    assert outcome.sections["table_6"] == [OFF] * 100
+
+
 def test_the_table_names_what_is_off():
     """With both values and errors."""
     found = record()
