@@ -3,9 +3,12 @@
 import sys
 from pathlib import Path
 
+from reproduction.configuration.files import read
+from reproduction.configuration.layers import Layers
+from reproduction.errors import ConfigError
+from workflow.checks import check
 from workflow.dependencies import sources
 from workflow.experiment import (
-    check,
     ergodic_scenes,
     finite,
     halving_paths,
@@ -15,16 +18,26 @@ from workflow.experiment import (
     sweep_halving,
     swept,
 )
-from nonsmooth.errors import NonsmoothError
+
+# config.yaml, then what the command line lays over it
+try:
+    check(
+        Layers(
+            [
+                *(
+                    (str(file), read(file))
+                    for file in ("config.yaml", *workflow.overwrite_configfiles)
+                ),
+                ("--config", workflow.config_settings.config),
+            ]
+        )
+    )
+except ConfigError as error:
+    sys.exit(f"error: {error}")
 
 
 configfile: "config.yaml"
 
-
-try:
-    check(config)
-except NonsmoothError as error:
-    sys.exit(f"error: {error}")
 
 PAPER = config["outputs"]["paper"]
 

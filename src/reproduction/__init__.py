@@ -1,9 +1,11 @@
 """What only the paper needs: its results as files, figures and tables, and its examples.
 
 The workflow's scripts call this package, and this package calls the library `nonsmooth`. The
-packages `jobs` and `rendering` and the modules `agreement` and `errors` serve all topics of the
-paper; every other package or module is one topic.
+packages `configuration`, `jobs` and `rendering` and the modules `agreement`, `errors` and
+`time_scales` serve all topics of the paper; every other package or module is one topic.
 
+`configuration`
+    What the user asks for, read strictly, and one line about what is wrong with it.
 `jobs`
     How a script runs, and the files that it reads and writes.
 `rendering`
@@ -12,6 +14,8 @@ paper; every other package or module is one topic.
     `deviation`, `require_telling`: whether a method agrees with the reference beside it.
 `errors`
     Errors of the workflow: `ConfigError`, `ArtifactError`, `CheckError`.
+`time_scales`
+    `contact_time`: what the steps of a penalized scene must resolve.
 `convergence`
     `printed_in_table_4`: the values that the paper prints for a scene and a horizon.
 `gamma2`

@@ -2,12 +2,27 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from nonsmooth.errors import NonsmoothError
 
 
 class ConfigError(NonsmoothError):
-    """A configuration that does not fit its schema."""
+    """A configuration that cannot be run.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong and what helps.
+    place : str or Path, optional
+        Where: the file, which becomes the beginning of the message.
+    key : tuple
+        Keys and positions of the value to blame, from the outermost to the innermost.
+    """
+
+    def __init__(self, message: str, place: str | Path = "", key: tuple = ()) -> None:
+        super().__init__(f"{place}: {message}" if place else message)
+        self.key = key
 
 
 class ArtifactError(NonsmoothError):

@@ -6,7 +6,8 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.sampling import Sampling
-from reproduction.rates import contact_time, gamma2_difference, largest_distances, slope
+from reproduction.rates import gamma2_difference, largest_distances, slope
+from reproduction.time_scales import contact_time
 
 N = np.array([10.0, 30.0, 100.0, 300.0, 1000.0])
 

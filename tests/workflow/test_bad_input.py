@@ -14,11 +14,11 @@ def lines_with(run, text):
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("alhpa=1", "error: config: unknown key 'alhpa'"),
-        ("seed=-3", "error: config: 'seed' = -3: must be at least 0"),
+        ("alhpa=1", "error: --config: unknown key 'alhpa'"),
+        ("seed=-3", "error: --config: 'seed' = -3: must be at least 0"),
         ("crossing={treshold: 1}", "did you mean 'threshold'?"),
         ("crossing={scene: {model: obstacle}}", "has the state (y, x)"),
-        ("outputs={results: config.yaml/results}", "cannot write into 'config.yaml'"),
+        ("outputs={results: config.yaml/results}", "is no folder"),
     ],
 )
 def test_bad_configuration(repository, setting, message):

@@ -52,7 +52,10 @@ def complete(job):
     # snakemake sets these three only if the rule itself declares an input, a log and a benchmark
     job.input_modifier = job.log_modifier = job.benchmark_modifier = job.output_modifier
     job.set_input(modules=sources(f"workflow/{job.script.removeprefix('../')}"))
-    name = Path(job.output[0].removeprefix(f"{config['outputs']['results']}/")).with_suffix("")
+    # the paper may lie elsewhere
+    output, results = Path(job.output[0]), Path(config["outputs"]["results"])
+    inside = output.is_relative_to(results)
+    name = (output.relative_to(results) if inside else Path("paper", output.name)).with_suffix("")
     job.set_log(f"<logs>/{name}.log")
     job.benchmark = f"<benchmarks>/{name}.tsv"
     job.conda_env = "../envs/environment.yaml"

@@ -7,6 +7,4 @@
     netCDF files with units, errors and provenance: `dataset`, `write`, `read`, `provenance`.
 `files`
     `whole`: a file is written completely or not at all.
-`configuration`
-    `validate`: errors of the configuration in one line.
 """

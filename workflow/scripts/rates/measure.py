@@ -7,12 +7,12 @@ from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 from reproduction.rates import (
-    contact_time,
     gamma2_difference,
     largest_distances,
     slope,
     variance_difference,
 )
+from reproduction.time_scales import contact_time
 
 KINDS = {
     "pathwise": "mean of the largest distance up to T, on the same Brownian path",

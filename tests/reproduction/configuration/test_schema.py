@@ -5,10 +5,12 @@ import copy
 import pytest
 import yaml
 
-from nonsmooth.errors import NonsmoothError
-from reproduction.jobs.configuration import validate
+from reproduction.configuration.layers import Layers
+from reproduction.configuration.schema import validate
+from reproduction.errors import ConfigError
 from support import ROOT
-from workflow.experiment import SCHEMA, check, label, shards
+from workflow.checks import SCHEMA, check
+from workflow.experiment import label, shards
 
 CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())
 SMOKE = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text())
@@ -34,7 +36,7 @@ def leaves(schema, path=()):
 
 def test_the_paper_configuration_is_valid():
     """config.yaml is valid as it stands in the repository."""
-    check(CONFIG)
+    check(Layers([("config.yaml", CONFIG)]))
 
 
 def test_every_key_is_described():
@@ -42,7 +44,7 @@ def test_every_key_is_described():
     schema = yaml.safe_load(SCHEMA.read_text())
     definitions = schema["$defs"]
     for path, value in [*leaves(schema), *leaves({"properties": definitions})]:
-        if path[0] == "positive":
+        if path[0] in ("positive", "scale"):
             continue
         reference = definitions.get(value.get("$ref", "").rpartition("/")[2], {})
         assert "description" in value or "description" in reference, ".".join(path)
@@ -75,7 +77,11 @@ def test_the_smoke_configuration_only_overrides():
         ("variance.scene.potential", "x**2", "choose friction with potential '0'"),
         ("variance.scene.potential", "import os", "cannot read the formula"),
         ("variance.scene.observable", "q", "cannot read the formula"),
-        ("crossing.scene.model", "obstacle", "crossing.scene has the state (y, x)"),
+        (
+            "crossing.scene.model",
+            "obstacle",
+            "= 'obstacle' has the state (y, x)",
+        ),
         ("trajectories.models.friction.damping", 0, "must be greater than 0"),
         ("trajectories.models.friction.potential", "x +", "cannot read the formula"),
         ("convergence.scene.n", 5, "unknown key 'n' in 'convergence.scene'"),
@@ -85,7 +91,7 @@ def test_the_smoke_configuration_only_overrides():
         ("crossing.scene.noise", "langevin", "with white noise only"),
         ("crossing.outputs", 1, "must be at least 2"),
         ("variance.finite_difference.nodes", 4003, "use 4001"),
-        ("variance.finite_difference.time_step", 0.003, "twice it must divide"),
+        ("variance.finite_difference.time_step", 0.003, "must be a half of a divisor"),
         ("variance.horizon", 0.01, "must be a larger multiple"),
         ("variance.first_time", 0.07, "must be a larger multiple"),
         ("limit_theorem.scenes", ["no_such_scene"], "not a simulated scene of the sweep"),
@@ -104,14 +110,14 @@ def test_the_smoke_configuration_only_overrides():
         ("gamma2.potentials.scenes.3.noise.potential", "-eta**2", "is not confining"),
         ("gamma2.potentials.scenes.3.noise", "langevin", "'gamma2.potentials.scenes.3.noise'"),
         ("gamma2.potentials.times", [10, 60, 20], "'gamma2.potentials.times'"),
-        ("outputs.results", "config.yaml/results", "cannot write into 'config.yaml'"),
+        ("outputs.results", "config.yaml/results", "is no folder"),
     ],
 )
 def test_bad_keys(path, value, message, monkeypatch):
     """The message names the key; it is one line."""
     monkeypatch.chdir(ROOT)
-    with pytest.raises(NonsmoothError) as error:
-        check(changed(path, value))
+    with pytest.raises(ConfigError) as error:
+        check(Layers([("config.yaml", changed(path, value))]))
     assert message in str(error.value)
     assert "\n" not in str(error.value)
 
@@ -120,7 +126,7 @@ def test_missing_key():
     """The key and where it is missing."""
     config = copy.deepcopy(CONFIG)
     del config["crossing"]["p"]
-    with pytest.raises(NonsmoothError, match="'p' is missing in 'crossing'"):
+    with pytest.raises(ConfigError, match="'p' is missing in 'crossing'"):
         validate(config, yaml.safe_load(SCHEMA.read_text()))
 
 
