@@ -54,7 +54,7 @@ def compare(published: Record, found: Record, results: str = "results") -> Compa
     ArtifactError
         If an artifact was made with other parameters.
     """
-    for name in published.artifacts.keys() & found.artifacts.keys():
+    for name in sorted(published.artifacts.keys() & found.artifacts.keys()):
         if published.artifacts[name]["parameters"] != found.artifacts[name]["parameters"]:
             raise ArtifactError(
                 f"{results}/{name} was made with other parameters (sizes, scenes, times) than the "

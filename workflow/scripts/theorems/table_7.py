@@ -41,6 +41,7 @@ def smallest(drift_condition):
         }
         if row.noise != "hamiltonian":
             shown[COLUMNS["forcing_printed"]] = "--"  # Claim 9 of the paper is right as printed
+        c = row.coefficient
         v = ", $v = " + latex(parse(row.v, (eta,))) + "$" if row.v else ""
         cells.append(
             {
@@ -49,7 +50,7 @@ def smallest(drift_condition):
                 "scenes": str(row.scenes),
             }
             | shown
-            | {"$c$": f"${row.coefficient:.3g}$"}
+            | {"$c$": scientific(c, 2) if c >= 1000 else f"${c:.3g}$"}
         )
     return plain, pd.DataFrame(cells)
 
