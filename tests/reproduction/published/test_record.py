@@ -107,7 +107,8 @@ def known(record, section):
 def holds(values, value, unit):
     """Whether a number is among values: rounded to the unit, or raised.
 
-    Bounds are raised by 5 % and rounded; or they include the rounding of a value and are rounded up.
+    Bounds are raised by 5 % and rounded; or they include the rounding of a value, and are rounded
+    up.
     """
     half = 0.5001 * unit
     rounded = np.abs(values - value) <= half
