@@ -1,5 +1,7 @@
 """Bad input to the workflow: one clear line, a non-zero exit, nothing half-written."""
 
+import netCDF4
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -30,22 +32,72 @@ def test_bad_configuration(repository, setting, message):
     assert not (repository.folder / "results").exists()
 
 
-@pytest.mark.parametrize("damage", ["truncated", "foreign"])
-def test_damaged_artifact(finished, damage):
+def truncated(path):
+    """Keep half of the file."""
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def flipped(path):
+    """Change one bit of the data."""
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def with_nan(path):
+    """Let another program write NaN."""
+    with netCDF4.Dataset(path, "r+") as file:
+        file["x"][0, 0] = np.nan
+
+
+def foreign(path):
+    """Let another program write other variables and dimensions, with the attributes of ours."""
+    data = xr.load_dataset(path)
+    path.unlink()
+    data.drop_vars("y").isel(t=slice(10)).to_netcdf(path)
+
+
+def of_another_model(path):
+    """Put another artifact in its place."""
+    path.write_bytes(path.with_name("obstacle.nc").read_bytes())
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        (truncated, " is truncated, changed, or no artifact"),
+        (flipped, " is damaged"),
+        (with_nan, " is damaged"),
+        (foreign, " is truncated, changed, or no artifact"),
+        (of_another_model, ": it is trajectories/obstacle.nc under another name"),
+    ],
+)
+def test_damaged_artifact(finished, damage, message):
     """A rule that reads a damaged file names it and its cure, and leaves nothing half-written."""
     source = finished.folder / RESULTS / "trajectories" / "friction.nc"
-    good = source.read_bytes()
-    source.unlink()
-    if damage == "truncated":
-        source.write_bytes(good[: len(good) // 2])
-        message = "friction.nc is not a readable netCDF file"
-    else:
-        xr.Dataset({"x": ("time", [1.0, 2.0])}).to_netcdf(source)
-        message = "friction.nc was not written by this package"
+    damage(source)
     run = finished.snakemake("--cores", "1", "--force", "--", "figure_5")
     assert run.returncode != 0
-    assert len(lines_with(run, f"error: {RESULTS}/trajectories/{message}")) == 1
+    message = f"error: {RESULTS}/trajectories/friction.nc{message}"
+    (line,) = lines_with(run, message)
+    assert "delete it and run snakemake again" in line
     log = (finished.folder / RESULTS / "logs" / "figures" / "figure_5.log").read_text()
     assert log.startswith("Traceback")
-    assert message in log
+    assert not (finished.folder / RESULTS / "figures" / "figure_5.pdf").exists()
     assert not list((finished.folder / RESULTS).rglob(".*partial*"))
+
+
+@pytest.mark.parametrize(
+    "name", ["tables/table_5.typ", "figures/figure_1.pdf", "paper/values.json"]
+)
+def test_the_paper_quotes_nothing_damaged(finished, name):
+    """One digit or byte of what it includes is another."""
+    path = finished.folder / RESULTS / name
+    content = bytearray(path.read_bytes())
+    place = max(k for k, byte in enumerate(content) if byte in b"12345678")
+    content[place] += 1
+    path.write_bytes(content)
+    run = finished.snakemake("--cores", "1", "--force", "--rerun-triggers", "input", "--", "paper")
+    assert run.returncode != 0
+    (line,) = lines_with(run, f"error: {RESULTS}/{name} is damaged or changed")
+    assert f"delete {RESULTS}/{name} and run snakemake again" in line

@@ -1,5 +1,6 @@
 """The whole workflow at reduced sizes: every rule, every figure and table, the same bytes."""
 
+import hashlib
 import json
 import math
 import re
@@ -44,8 +45,9 @@ def test_every_artifact_is_described(smoke_run):
     """Units, long names, errors as ancillary variables, provenance; no clock time."""
     paths = sorted((smoke_run.folder / RESULTS).rglob("*.nc"))
     assert len(paths) > 20
-    for path in paths:
-        data = artifact.read(path)
+    read = {path: artifact.read(path) for path in paths}
+    assert len({data.attrs["id"] for data in read.values()}) == len(paths)
+    for path, data in read.items():
         assert "lock sha256" in data.attrs["history"]
         assert not re.search(r"20\d\d-\d\d-\d\d", str(data.attrs))
         for name, variable in data.variables.items():
@@ -53,11 +55,13 @@ def test_every_artifact_is_described(smoke_run):
 
 
 def test_every_artifact_has_a_log_and_a_benchmark(smoke_run):
-    """Under its own name."""
+    """Under its own name; the log has the checksum."""
     results = smoke_run.folder / RESULTS
     for path in results.rglob("*.nc"):
         name = path.relative_to(results)
-        assert (results / "logs" / name).with_suffix(".log").read_text() == "done\n"
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        log = (results / "logs" / name).with_suffix(".log").read_text()
+        assert log == f"{digest}  {RESULTS}/{name}\ndone\n"
         assert (results / "benchmarks" / name).with_suffix(".tsv").exists()
 
 

@@ -1,6 +1,11 @@
-"""Artifacts: netCDF files with units, errors and provenance, written whole or not at all."""
+"""Artifacts: netCDF files with units, errors and provenance, written whole or not at all.
+
+The last line of an artifact is the checksum of all bytes before it, after the end of what netCDF
+libraries read. `read` verifies it first: a damaged file can crash or hang these libraries.
+"""
 
 import hashlib
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -9,9 +14,9 @@ import xarray as xr
 
 import nonsmooth
 from reproduction.errors import ArtifactError
-from reproduction.jobs.files import whole
+from reproduction.jobs.files import write_whole
 
-_MARK = "nonsmooth"  # the `source` attribute starts with it
+_CHECKSUM = b"\nnonsmooth sha256 "  # begins the last line
 _LOCK = Path("environment-lock.txt")  # in the folder from which the workflow runs
 
 
@@ -57,7 +62,7 @@ def provenance(rule: str, parameters: Mapping) -> str:
     """
     arguments = ", ".join(f"{key}={value!r}" for key, value in sorted(parameters.items()))
     digest = hashlib.sha256(_LOCK.read_bytes()).hexdigest()[:16]
-    return f"rule {rule}({arguments}); {_MARK} {nonsmooth.__version__}; lock sha256 {digest}"
+    return f"rule {rule}({arguments}); nonsmooth {nonsmooth.__version__}; lock sha256 {digest}"
 
 
 def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
@@ -75,17 +80,13 @@ def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
     Raises
     ------
     ArtifactError
-        If a variable is not described or not finite, or the folder cannot be written.
+        If a variable is not described or not finite, or the file cannot be written.
     """
-    path = Path(path)
     dataset = dataset[sorted(map(str, dataset.data_vars))].copy()
+    flaw = _flaw(dataset)
+    if flaw:
+        raise ArtifactError(f"{path}: {flaw}; mend the computation that leads to it")
     for name, variable in dataset.variables.items():
-        if not {"long_name", "units"} <= variable.attrs.keys():
-            raise ArtifactError(f"{path}: variable {name!r} has no long_name or units; add them")
-        if name in dataset.data_vars and not np.all(np.isfinite(variable)):
-            raise ArtifactError(
-                f"{path}: variable {name!r} is not finite; the computation that led to it failed"
-            )
         if f"{name}_error" in dataset:
             variable.attrs["ancillary_variables"] = f"{name}_error"
         variable.encoding = {"_FillValue": None}
@@ -93,14 +94,15 @@ def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
     dataset.attrs = {
         "Conventions": "CF-1.11, ACDD-1.3",
         "history": history,
+        "id": _identity(path),
         "keywords": "random vibration, non-smooth mechanics, penalization, threshold crossing",
         "license": "MIT",
-        "source": f"{_MARK} {nonsmooth.__version__}",
+        "source": f"nonsmooth {nonsmooth.__version__}",
         "summary": dataset.attrs["summary"],
         "title": dataset.attrs["title"],
     }
-    with whole(path) as partial:
-        dataset.to_netcdf(partial, engine="netcdf4", format="NETCDF4")
+    content = _encoded(dataset)
+    write_whole(path, content + _CHECKSUM + _digest(content))
 
 
 def read(path: str | Path) -> xr.Dataset:
@@ -109,19 +111,60 @@ def read(path: str | Path) -> xr.Dataset:
     Raises
     ------
     ArtifactError
-        If the file is missing, truncated, or not an artifact of this package.
+        If the file cannot be read, is not as it was written, or is that of another artifact.
     """
-    path = Path(path)
-    if not path.exists():
-        raise ArtifactError(f"{path} does not exist; run snakemake to make it")
+    again = "delete it and run snakemake again"
     try:
-        dataset = xr.load_dataset(path, engine="netcdf4", decode_times=False)
-    except (OSError, ValueError, RuntimeError):
-        raise ArtifactError(
-            f"{path} is not a readable netCDF file (truncated?); delete it and run snakemake again"
-        ) from None
-    if not str(dataset.attrs.get("source", "")).startswith(_MARK):
-        raise ArtifactError(
-            f"{path} was not written by this package; move it away and run snakemake again"
-        )
+        content, _, digest = Path(path).read_bytes().rpartition(_CHECKSUM)
+    except FileNotFoundError:
+        raise ArtifactError(f"{path} does not exist; run snakemake to make it") from None
+    except OSError as error:
+        raise ArtifactError(f"cannot read {path} ({error.strerror or error}); {again}") from None
+    if not content:
+        raise ArtifactError(f"{path} is truncated, changed, or no artifact: no checksum; {again}")
+    if digest != _digest(content):
+        raise ArtifactError(f"{path} is damaged: its checksum does not fit; {again}")
+    dataset = xr.load_dataset(content, engine="netcdf4", decode_times=False)
+    flaw = _flaw(dataset)
+    if dataset.attrs["id"] != _identity(path):
+        flaw = f"it is {dataset.attrs['id']}.nc under another name"
+    if flaw:
+        raise ArtifactError(f"{path}: {flaw}; {again}")
     return dataset
+
+
+def _encoded(dataset):
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "artifact.nc"
+            dataset.to_netcdf(file, engine="netcdf4", format="NETCDF4")
+            return file.read_bytes()
+    except (OSError, RuntimeError) as error:
+        # no library says why, but a new file in a new folder lacks nothing but space
+        raise ArtifactError(
+            f"cannot write a temporary file ({error}); free space there or set TMPDIR"
+        ) from None
+
+
+def _digest(content):
+    return hashlib.sha256(content).hexdigest().encode() + b"\n"
+
+
+def _identity(path):
+    """Name an artifact by its folder and itself: unique, and the same in every results folder."""
+    path = Path(path).absolute()
+    return f"{path.parent.name}/{path.stem}"
+
+
+def _flaw(dataset):
+    """Say what an artifact must not have, or nothing."""
+    for name, variable in dataset.variables.items():
+        bad = np.isnan if name in dataset.coords else lambda values: ~np.isfinite(values)
+        if not {"long_name", "units"} <= variable.attrs.keys():
+            return f"variable {name!r} has no long_name or units"
+        if variable.dtype.kind == "f" and np.any(bad(variable.values)):
+            return f"variable {name!r} is not finite"
+        error = dataset.variables.get(f"{name}_error")
+        if error is not None and error.dims != variable.dims:
+            return f"variable {name!r} and its error have different dimensions"
+    return None

@@ -1,5 +1,7 @@
 """How a script runs as a job: errors that the user can mend are one line, others a traceback."""
 
+import errno
+import hashlib
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -10,7 +12,9 @@ from typing import Protocol
 import xarray as xr
 
 from nonsmooth.errors import NonsmoothError
+from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
+from reproduction.jobs.files import write_whole
 
 
 class Task(Protocol):
@@ -35,30 +39,83 @@ class Task(Protocol):
 
 
 @contextmanager
-def job(log: str | Path) -> Iterator[None]:
-    """Run the body; on failure write the traceback to `log` and exit with status 1.
+def job(task: Task) -> Iterator[None]:
+    """Run the body; its log has the traceback or, if all went well, the checksums of the output.
 
     Parameters
     ----------
-    log : str or Path
+    task : Task
+        If its log cannot be written, a line says so; the result of the body counts.
 
     Raises
     ------
     SystemExit
-        After a `NonsmoothError`, whose message is printed as one line.
+        With status 1 after a `NonsmoothError`, a full disk or a lack of memory, told in one line.
     """
-    log = Path(log)
-    log.parent.mkdir(parents=True, exist_ok=True)
     try:
         yield
-    except NonsmoothError as error:
-        log.write_text(traceback.format_exc(), encoding="utf-8")
-        print(f"error: {error}", file=sys.stderr)
+    except BaseException as error:
+        _record(task, traceback.format_exc())
+        message = _message(error)
+        if message is None:
+            raise
+        print(f"error: {message}", file=sys.stderr)
         raise SystemExit(1) from None
-    except BaseException:
-        log.write_text(traceback.format_exc(), encoding="utf-8")
-        raise
-    log.write_text("done\n", encoding="utf-8")
+    sums = "".join(f"{_digest(path)}  {path}\n" for path in task.output)
+    _record(task, f"{sums}done\n")
+
+
+def require_as_written(path: str | Path, log: str | Path) -> None:
+    """Compare a file with the checksum in the log of the job that wrote it.
+
+    Artifacts carry their own.
+
+    Parameters
+    ----------
+    path, log : str or Path
+
+    Raises
+    ------
+    ArtifactError
+        If they differ or one cannot be read.
+    """
+    again = f"delete {path} and run snakemake again"
+    try:
+        sums = [line.split(maxsplit=1) for line in Path(log).read_text("utf-8").splitlines()]
+        same = [_digest(path), str(path)] in sums
+    except (OSError, UnicodeDecodeError) as error:
+        raise ArtifactError(f"cannot compare {path} with {log} ({error}); {again}") from None
+    if not same:
+        raise ArtifactError(f"{path} is damaged or changed: not the checksum of {log}; {again}")
+
+
+def _digest(path):
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def _record(task, text):
+    try:
+        write_whole(task.log[0], text.encode())
+    except ArtifactError as error:
+        print(f"warning: {error}", file=sys.stderr)
+
+
+def _message(error):
+    """Return the line for an error that the user can mend."""
+    if isinstance(error, NonsmoothError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return (
+            f"not enough memory ({error or 'none is left'}); close other programs, run with "
+            "--cores 1, or reduce the sizes of this rule in the configuration"
+        )
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        # not of a result, which `write_whole` writes
+        return (
+            f"cannot write a cache or a temporary file ({error}); "
+            f"free space on the disks of {Path.cwd()} and of TMPDIR"
+        )
+    return None
 
 
 def inputs(task: Task) -> dict[str, xr.Dataset | list[xr.Dataset]]:
@@ -96,7 +153,7 @@ def produce(compute: Callable, task: Task, **options: object) -> None:
     **options
         More arguments of `compute`, on which the result does not depend, such as `threads`.
     """
-    with job(task.log[0]):
+    with job(task):
         data, parameters = inputs(task), dict(task.params.items())
         first = [d[0] if isinstance(d, list) else d for d in data.values()]
         trail = [d.attrs["history"] for d in first] + [artifact.provenance(task.rule, parameters)]

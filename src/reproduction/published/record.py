@@ -9,7 +9,7 @@ from pathlib import Path
 
 from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
-from reproduction.jobs.files import whole
+from reproduction.jobs.files import write_whole
 from reproduction.rendering.quoted import BOUND, ERROR, INTERVAL, STANDARD
 
 ON_DEMAND = {"speed_against_error", "hard_cases"}  # topics that are not part of the paper's run
@@ -83,9 +83,8 @@ def gather(results: Path) -> Record:
 
 def write(record: Record, path: Path) -> None:
     """Write a record, sorted, with one line for each value."""
-    with whole(path) as partial:
-        content = json.dumps(asdict(record), indent=1, sort_keys=True, ensure_ascii=False)
-        partial.write_text(f"{content}\n", encoding="utf-8")
+    content = json.dumps(asdict(record), indent=1, sort_keys=True, ensure_ascii=False)
+    write_whole(path, f"{content}\n".encode())
 
 
 def read(path: Path) -> Record:

@@ -1,6 +1,7 @@
 """One style for all figures; the same bytes on every run."""
 
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from numpy.typing import ArrayLike
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
-from reproduction.jobs.files import whole
+from reproduction.jobs.files import write_whole
 from reproduction.jobs.job import Task, inputs, job
 
 TEXT_WIDTH = 6.3  # inches
@@ -54,14 +55,15 @@ def draw(plot: Callable, task: Task) -> None:
         Takes the task's input artifacts and parameters by name, returns a matplotlib Figure.
     task : Task
     """
-    with job(task.log[0]), mpl.rc_context(STYLE):
+    with job(task), mpl.rc_context(STYLE):
         figure = plot(**inputs(task), **dict(task.params.items()))
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # the layout found above serves all files
         for path in map(Path, task.output):
             metadata = {"CreationDate": None} if path.suffix == ".pdf" else {"Software": None}
-            with whole(path) as partial:
-                figure.savefig(partial, metadata=metadata)
+            content = BytesIO()
+            figure.savefig(content, format=path.suffix[1:], metadata=metadata)
+            write_whole(path, content.getvalue())
         plt.close(figure)
 
 

@@ -23,8 +23,13 @@ def printed_values(label: str) -> dict:
     Returns
     -------
     dict
+
+    Raises
+    ------
+    ArtifactError
+        If `PRINTED` cannot be read or has no such label.
     """
-    return _read()[label]
+    return _read(label)
 
 
 def numbered(text: str) -> str:
@@ -42,9 +47,9 @@ def numbered(text: str) -> str:
     Raises
     ------
     ArtifactError
-        If a label has no number in `PRINTED`.
+        If `PRINTED` cannot be read or a label has no number there.
     """
-    numbers = _read()["numbers"]
+    numbers = _read("numbers")
 
     def number(match):
         label = match[1]
@@ -55,6 +60,12 @@ def numbered(text: str) -> str:
     return re.sub(r"\\ref\{([^}]*)\}", number, text)
 
 
-def _read():
-    with open(PRINTED, encoding="utf-8") as file:
-        return yaml.safe_load(file)
+def _read(key):
+    try:
+        with open(PRINTED, encoding="utf-8") as file:
+            return dict(yaml.safe_load(file)[key])
+    except (OSError, ValueError, TypeError, KeyError, yaml.YAMLError) as error:
+        reason = " ".join(str(error).split())
+        raise ArtifactError(
+            f"{PRINTED} has no readable entry {key!r} ({reason}); restore it with git"
+        ) from None

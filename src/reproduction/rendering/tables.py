@@ -12,7 +12,7 @@ import tylax
 import xarray as xr
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.jobs.files import whole
+from reproduction.jobs.files import write_whole
 from reproduction.jobs.job import Task, inputs, job
 
 
@@ -26,7 +26,7 @@ def typeset(build: Callable, task: Task) -> None:
         table of plain numbers for the CSV file and the table of cells for reading.
     task : Task
     """
-    with job(task.log[0]):
+    with job(task):
         plain, cells = build(**inputs(task), **dict(task.params.items()))
         render = {
             ".csv": lambda: plain.to_csv(index=False),
@@ -34,8 +34,7 @@ def typeset(build: Callable, task: Task) -> None:
             ".typ": lambda: typst(cells),
         }
         for path in map(Path, task.output):
-            with whole(path) as partial:
-                partial.write_text(render[path.suffix](), encoding="utf-8")
+            write_whole(path, render[path.suffix]().encode())
 
 
 def latex(cells: pd.DataFrame) -> str:

@@ -1,5 +1,8 @@
-"""Artifacts: whole or not at all, described, reproducible to the byte, recognised as ours."""
+"""Artifacts: whole or not at all, described, reproducible to the byte, never read damaged."""
 
+import hashlib
+
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -36,9 +39,22 @@ def test_round_trip_and_metadata(tmp_path):
 
 def test_same_bytes_again(tmp_path):
     """No clock time and no order of insertion in the file."""
-    for name in ("a.nc", "b.nc"):
-        artifact.write(example(), tmp_path / name, "rule example()")
-    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+    paths = [tmp_path / results / "topic" / "a.nc" for results in ("results", "elsewhere")]
+    for path in paths:
+        artifact.write(example(), path, "rule example()")
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+
+
+def test_other_programs_read_it(tmp_path):
+    """NetCDF libraries ignore the checksum, which is that of the bytes before the last line."""
+    path = tmp_path / "x.nc"
+    artifact.write(example(), path, "")
+    with netCDF4.Dataset(path) as file:
+        assert np.array_equal(file["q"][:], [1.0, 2.0])
+    with xr.open_dataset(path) as data:
+        assert data.attrs["id"] == f"{tmp_path.name}/x"
+    content, last = path.read_bytes()[:-83], path.read_bytes()[-83:]
+    assert last == b"\nnonsmooth sha256 %s\n" % hashlib.sha256(content).hexdigest().encode()
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
@@ -47,6 +63,18 @@ def test_values_that_are_not_finite_are_refused(tmp_path, bad):
     with pytest.raises(ArtifactError, match="'q' is not finite"):
         artifact.write(example((1.0, bad)), tmp_path / "x.nc", "")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_coordinates_may_be_infinite_but_not_undefined(tmp_path):
+    """N = inf is the limit; NaN is nothing."""
+    for value in (np.inf, np.nan):
+        data = example().assign_coords(time=("time", [0.1, value], example()["time"].attrs))
+        if np.isnan(value):
+            with pytest.raises(ArtifactError, match="'time' is not finite"):
+                artifact.write(data, tmp_path / "x.nc", "")
+        else:
+            artifact.write(data, tmp_path / "x.nc", "")
+            assert artifact.read(tmp_path / "x.nc")["time"][-1] == value
 
 
 def test_undescribed_variables_are_refused(tmp_path):
@@ -68,29 +96,110 @@ def test_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
 
 
-def test_unwritable_folder_is_one_line(tmp_path):
-    """A file stands where the folder should be."""
-    (tmp_path / "results").write_text("")
-    with pytest.raises(ArtifactError, match="cannot write") as error:
-        artifact.write(example(), tmp_path / "results" / "x.nc", "")
+def test_no_space_for_temporary_files(tmp_path, monkeypatch):
+    """NetCDF says no more than HDF error."""
+
+    def fail(*arguments, **options):
+        raise RuntimeError("NetCDF: HDF error")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    with pytest.raises(ArtifactError, match=r"\(NetCDF: HDF error\); free space there or set"):
+        artifact.write(example(), tmp_path / "x.nc", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_errors_have_the_dimensions_of_their_variables(tmp_path):
+    """A shorter error is refused."""
+    data = example()
+    data["q_error"] = data["q_error"].isel(time=0, drop=True)
+    with pytest.raises(ArtifactError, match="'q' and its error have different dimensions"):
+        artifact.write(data, tmp_path / "x.nc", "")
+
+
+def put_nan(path):
+    """Write NaN with another program."""
+    with netCDF4.Dataset(path, "r+") as file:
+        file["q"][0] = np.nan
+
+
+def without(path):
+    """Write the file again without a variable."""
+    data = xr.load_dataset(path)
+    data.drop_vars("q_error").to_netcdf(path)
+
+
+def shortened(path):
+    """Write the file again with one time less."""
+    xr.load_dataset(path).isel(time=slice(1)).to_netcdf(path)
+
+
+def cut(path):
+    """Keep the first half of the file."""
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def lengthened(path):
+    """Append a byte."""
+    path.write_bytes(path.read_bytes() + b"x")
+
+
+def emptied(path):
+    """Keep nothing."""
+    path.write_bytes(b"")
+
+
+def text(path):
+    """Put something else in its place."""
+    path.write_text("not a netCDF file")
+
+
+def folder(path):
+    """Put a folder in its place."""
+    path.unlink()
+    path.mkdir()
+
+
+@pytest.mark.parametrize(
+    "damage", [put_nan, without, shortened, cut, lengthened, emptied, text, folder]
+)
+def test_what_is_not_as_it_was_written_is_refused(tmp_path, damage):
+    """In one line that names the file and the cure."""
+    path = tmp_path / "x.nc"
+    artifact.write(example(), path, "")
+    damage(path)
+    with pytest.raises(ArtifactError, match="delete it and run snakemake again") as error:
+        artifact.read(path)
+    assert str(path) in str(error.value)
     assert "\n" not in str(error.value)
 
 
-def test_missing_truncated_and_foreign_files_are_one_line(tmp_path):
-    """Each names the file and the cure."""
-    good, path = tmp_path / "good.nc", tmp_path / "x.nc"
+def test_every_flipped_bit_is_found(tmp_path):
+    """One bit in every byte of the file, head, data and checksum."""
+    path = tmp_path / "x.nc"
+    artifact.write(example(), path, "")
+    good = path.read_bytes()
+    for place in range(0, len(good)):
+        bad = bytearray(good)
+        bad[place] ^= 1 << place % 8
+        path.write_bytes(bad)
+        with pytest.raises(ArtifactError, match="delete it and run snakemake again"):
+            artifact.read(path)
+
+
+def test_an_artifact_in_the_place_of_another_is_refused(tmp_path):
+    """Its folder and its name are in the file; the results folder is not."""
+    for name in ("p=1/0.nc", "p=10/0.nc"):
+        artifact.write(example(), tmp_path / name, "")
+    (tmp_path / "p=1").rename(tmp_path / "p=1 kept")
+    (tmp_path / "p=10").rename(tmp_path / "p=1")
+    with pytest.raises(ArtifactError, match=r"it is p=10/0\.nc under another name; delete it"):
+        artifact.read(tmp_path / "p=1" / "0.nc")
+
+
+def test_missing_file_is_one_line(tmp_path):
+    """It says how to make it."""
     with pytest.raises(ArtifactError, match="does not exist; run snakemake"):
-        artifact.read(path)
-    artifact.write(example(), good, "")
-    path.write_bytes(good.read_bytes()[: good.stat().st_size // 2])
-    with pytest.raises(ArtifactError, match="truncated"):
-        artifact.read(path)
-    path.write_text("not a netCDF file")
-    with pytest.raises(ArtifactError, match="delete it"):
-        artifact.read(path)
-    xr.Dataset({"q": 1.0}).to_netcdf(path)
-    with pytest.raises(ArtifactError, match="not written by this package"):
-        artifact.read(path)
+        artifact.read(tmp_path / "x.nc")
 
 
 def test_provenance_has_parameters_and_the_lock(tmp_path, monkeypatch):

@@ -22,3 +22,17 @@ def test_an_unknown_label_is_refused():
     """The error says where to add it."""
     with pytest.raises(ArtifactError, match=r"printed\.yaml has no number for the label misspelt"):
         numbered(r"eq. \ref{misspelt}")
+
+
+@pytest.mark.parametrize(
+    "content", [None, b"", b"numbers: [", b"- 1", b"numbers: 3", b"\xff\xfe", b"other: {}"]
+)
+def test_a_damaged_file_is_one_line(tmp_path, monkeypatch, content):
+    """Missing, empty, cut off, of another kind: the cure is the tracked file."""
+    monkeypatch.chdir(tmp_path)
+    if content is not None:
+        (tmp_path / "paper").mkdir()
+        (tmp_path / "paper" / "printed.yaml").write_bytes(content)
+    with pytest.raises(ArtifactError, match=r"printed\.yaml has no readable entry") as error:
+        numbered("")
+    assert "\n" not in str(error.value)

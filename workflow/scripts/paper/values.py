@@ -2,18 +2,17 @@
 
 import json
 
-from reproduction.jobs.files import whole
+from reproduction.jobs.files import write_whole
 from reproduction.jobs.job import inputs, job
 from reproduction.paper_values import paper_values
 from reproduction.rendering.quoted import Quoted, leaves
 
 if __name__ == "__main__":
-    with job(snakemake.log[0]):
+    with job(snakemake):
         result = paper_values(inputs(snakemake), dict(snakemake.params.items()))
         numbers = {
             name: {"text": text} | vars(text) if isinstance(text, Quoted) else text
             for name, text in leaves(result).items()
         }
         for path, content in zip(snakemake.output, (result, numbers), strict=True):
-            with whole(path) as partial:
-                partial.write_text(json.dumps(content, indent=1), encoding="utf-8")
+            write_whole(path, json.dumps(content, indent=1).encode())
