@@ -75,9 +75,9 @@ def variance(
 ) -> dict:
     """Return the errors of the three methods of figure 2a, and how far they agree."""
     scheme = section["finite_difference"]
-    deterministic_error = spectral["v_error"] / spectral["time"]
+    deterministic_error = spectral["v_error"] / spectral["tau"]
     sampled = {
-        name: float((monte_carlo[name] / monte_carlo["time"])[-1])
+        name: float((monte_carlo[name] / monte_carlo["tau"])[-1])
         for name in ("v_error", "bias", "bias_error")
     }
     gamma2, gamma2_error = float(spectral["gamma2"]), float(spectral["gamma2_error"])
@@ -87,7 +87,7 @@ def variance(
         "gamma2_error": _bound(spectral["gamma2_error"]),
         "rounded": decimal(gamma2, 4, gamma2_error, BOUND),
         "printed": str(printed_values("fig:fpn-cmp-PDE-MC")["asymptotic_value"]),
-        "horizon": _short(spectral["time"].values[-1]),
+        "horizon": _short(spectral["tau"].values[-1]),
         "deterministic_error": _bound(deterministic_error.max()),
         "nodes": str(scheme["nodes"]),
         "time_step": _short(scheme["time_step"]),

@@ -42,8 +42,8 @@ def three_methods(**changes):
     difference = {"v": v + changes.get("shift", 1e-6), "v_error": 2e-6}
     return [
         xr.Dataset(
-            {k: ("time", np.broadcast_to(c, 3).astype(float)) for k, c in values.items()},
-            coords={"time": TAU},
+            {k: ("tau", np.broadcast_to(c, 3).astype(float)) for k, c in values.items()},
+            coords={"tau": TAU},
         )
         for values in ({"v": v, "v_error": 1e-12}, difference, monte_carlo)
     ]

@@ -20,7 +20,7 @@ def figure(trajectories, model):
     Parameters
     ----------
     trajectories : xarray.Dataset
-        y and x over (n, time).
+        y and x over (n, t).
     model : str
 
     Returns
@@ -30,7 +30,7 @@ def figure(trajectories, model):
     figure, axes = plt.subplots(
         1, 3, figsize=(TEXT_WIDTH, 2.25), width_ratios=[1.25, 1.25, 1.0], layout="constrained"
     )
-    time = trajectories["time"].values
+    time = trajectories["t"].values
     for n, (color, dashes, width) in _styles(trajectories["n"].values).items():
         run = trajectories.sel(n=n)
         text = r"$n = \infty$" if n == float("inf") else f"$n = {n:g}$"

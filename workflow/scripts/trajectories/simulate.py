@@ -15,7 +15,7 @@ def same_noise(model, potential, damping, n, horizon, step, outputs, seed, path)
     Returns
     -------
     xarray.Dataset
-        y and x over (n, time); n = inf is the non-smooth limit.
+        y and x over (n, t); n = inf is the non-smooth limit.
     """
     scene = Scene(model=model, potential=potential, damping=damping, observable="x")
     times = time_grids.equidistant(horizon, outputs)
@@ -37,11 +37,11 @@ def same_noise(model, potential, damping, n, horizon, step, outputs, seed, path)
         f"{scene.with_n(float('inf'))} and its penalizations on one Brownian path",
         {
             "n": ("n", [float(k) for k in n], "penalization; inf is the non-smooth limit"),
-            "time": ("time", joined["time"].values, "time"),
+            "t": ("t", joined["time"].values, "time"),
         },
         {
-            "y": (("n", "time"), joined["y"].values, "velocity"),
-            "x": (("n", "time"), joined["x"].values, "displacement"),
+            "y": (("n", "t"), joined["y"].values, "velocity"),
+            "x": (("n", "t"), joined["x"].values, "displacement"),
         },
     )
 

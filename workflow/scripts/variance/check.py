@@ -35,7 +35,7 @@ def deviations(spectral, finite_difference, monte_carlo):
     CheckError
         If a deviation exceeds what is allowed, or the errors of the finite differences are large.
     """
-    tau, v = spectral["time"].values, spectral["v"].values
+    tau, v = spectral["tau"].values, spectral["v"].values
     z = -ndtri(FALSE_ALARM / 2 / len(tau))
     allowed = {
         "finite_difference": finite_difference["v_error"].values,
@@ -63,8 +63,8 @@ def deviations(spectral, finite_difference, monte_carlo):
     return artifact.dataset(
         "Agreement of the three methods",
         "deviation from the spectral elements divided by the allowed error; all at most 1",
-        {"time": ("time", tau, "tau")},
-        {name: ("time", r, f"relative deviation of {name}") for name, r in ratio.items()}
+        {"tau": ("tau", tau, "time tau")},
+        {name: ("tau", r, f"relative deviation of {name}") for name, r in ratio.items()}
         | {
             "threshold": ((), z, "allowed Monte Carlo deviation in standard errors"),
             "false_alarm": ((), FALSE_ALARM, "probability of exceeding the threshold by chance"),

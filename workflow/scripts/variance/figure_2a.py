@@ -12,7 +12,7 @@ def three_methods(spectral, finite_difference, monte_carlo, check):
     -------
     matplotlib.figure.Figure
     """
-    tau, v = spectral["time"].values, spectral["v"].values
+    tau, v = spectral["tau"].values, spectral["v"].values
     figure, (top, bottom) = plt.subplots(
         2, 1, figsize=(0.75 * TEXT_WIDTH, 4.0), sharex=True, height_ratios=[2.2, 1]
     )

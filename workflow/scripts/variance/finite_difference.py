@@ -22,10 +22,10 @@ def paper_scheme(scene, first_time, horizon, points, half_width, nodes, time_ste
     return artifact.dataset(
         "Variance of the integrated observable by the paper's finite differences",
         f"v(0, tau) of {scene}",
-        {"time": ("time", tau, "tau")},
+        {"tau": ("tau", tau, "time tau")},
         {
-            "v": ("time", v, "variance of int_0^tau g"),
-            "v_error": ("time", v_error, "error bound of v from coarser steps and meshes"),
+            "v": ("tau", v, "variance of int_0^tau g"),
+            "v_error": ("tau", v_error, "error bound of v from coarser steps and meshes"),
         },
     )
 

@@ -26,10 +26,10 @@ def halving(scene, first_time, horizon, points, step, paths, seed, threads):
     return artifact.dataset(
         "Bias of the time step in the variance of the integrated observable",
         f"steps {step} and {step / 2} on the same paths of {scene}",
-        {"time": ("time", tau, "tau")},
+        {"tau": ("tau", tau, "time tau")},
         {
-            "bias": ("time", bias, "bias of v"),
-            "bias_error": ("time", error, "standard error of the bias"),
+            "bias": ("tau", bias, "bias of v"),
+            "bias_error": ("tau", error, "standard error of the bias"),
         },
     )
 

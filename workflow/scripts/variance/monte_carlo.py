@@ -25,12 +25,12 @@ def merge(shards, halving):
     return artifact.dataset(
         "Variance of the integrated observable by Monte Carlo",
         "all shards together; the first: " + shards[0].attrs["summary"],
-        {"time": ("time", shards[0]["time"].values, "tau")},
+        {"tau": ("tau", shards[0]["tau"].values, "time tau")},
         {
-            "v": ("time", found["variance"], "variance of int_0^tau g"),
-            "v_error": ("time", found["variance_error"], "standard error of v"),
-            "bias": ("time", halving["bias"].values, "bias of v by the time step"),
-            "bias_error": ("time", halving["bias_error"].values, "standard error of the bias"),
+            "v": ("tau", found["variance"], "variance of int_0^tau g"),
+            "v_error": ("tau", found["variance_error"], "standard error of v"),
+            "bias": ("tau", halving["bias"].values, "bias of v by the time step"),
+            "bias_error": ("tau", halving["bias_error"].values, "standard error of the bias"),
             "paths": ((), total[0, 0, 0], "number of paths"),
         },
     )

@@ -21,10 +21,10 @@ def shard(scene, first_time, horizon, points, step, part, seed, threads):
     return artifact.dataset(
         "Sums of the integrated observable and of its control variates",
         f"{paths} paths from number {first} of {scene}",
-        {"time": ("time", tau, "tau")},
+        {"tau": ("tau", tau, "time tau")},
         {
             "gram": (
-                ("time", "row", "column"),
+                ("tau", "row", "column"),
                 gram(scene, tau, Sampling(step, paths, seed, first, threads)),
                 "sums of the products of (1, D, D^2, M, M^2 - <M>)",
             )

@@ -22,10 +22,10 @@ def reference(scene, first_time, horizon, points, tolerance):
     return artifact.dataset(
         "Variance of the integrated observable by spectral elements",
         f"v(0, tau) and gamma^2 of {scene}",
-        {"time": ("time", tau, "tau")},
+        {"tau": ("tau", tau, "time tau")},
         {
-            "v": ("time", solution["v"].values, "variance of int_0^tau g"),
-            "v_error": ("time", solution["v_error"].values, "error bound of v"),
+            "v": ("tau", solution["v"].values, "variance of int_0^tau g"),
+            "v_error": ("tau", solution["v_error"].values, "error bound of v"),
             "gamma2": ((), gamma2.value, "asymptotic variance gamma^2"),
             "gamma2_error": ((), gamma2.error, "error bound of gamma^2"),
         },
