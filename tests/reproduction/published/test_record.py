@@ -7,14 +7,15 @@ import sys
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from reproduction.errors import ArtifactError
+from reproduction.jobs import artifact
 from reproduction.published.comparison import IDENTICAL, compare
 from reproduction.published.record import Number, gather, read, write
 from reproduction.rendering.quoted import BOUND, ERROR
 from support import ROOT
 
+EMPTY = artifact.dataset("nothing", "no variables", {}, {})
 DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+")
 # also of a value and its error in brackets
 POWER = re.compile(r"(?: plus\.minus [\d.]+)?\)?\s*times 10\^\((- )?(\d+)\)")
@@ -33,8 +34,7 @@ def results(tmp_path):
     (tmp_path / "tables" / "table_hard_cases.csv").write_text(table)
     for folder in ("gamma2", "hard_cases", "smoke/gamma2"):
         history = "rule first(seed=1); x\nrule gamma2(tol=1, seed=7); nonsmooth 0.2"
-        attrs = {"history": history, "source": "nonsmooth 0.2"}
-        xr.Dataset(attrs=attrs).to_netcdf(tmp_path / folder / "a.nc")
+        artifact.write(EMPTY, tmp_path / folder / "a.nc", history)
     return tmp_path
 
 
@@ -58,8 +58,7 @@ def test_the_parameters_are_the_own_ones_without_the_seed(results):
 
     def parameters(history):
         path = results / "gamma2" / "a.nc"
-        path.unlink()
-        xr.Dataset(attrs={"history": history, "source": "nonsmooth 0.2"}).to_netcdf(path)
+        artifact.write(EMPTY, path, history)
         return gather(results).artifacts["gamma2/a.nc"]["parameters"]
 
     one = parameters("rule gamma2(tol=1, seed=7); nonsmooth 0.2")
