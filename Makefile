@@ -11,9 +11,11 @@ help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile
 
 paper: env ## environment, all computations, and paper/paper.pdf
+	$(BIN)/python -m workflow.unlock
 	$(BIN)/snakemake --cores $(CORES)
 
 smoke: env ## every rule at reduced sizes, into results/smoke
+	$(BIN)/python -m workflow.unlock
 	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml -- all speed_against_error
 
 test: env ## the tests, a reduced run of the whole workflow among them
@@ -50,6 +52,7 @@ publish: env ## make results/, of a full run, what verify compares with
 
 # on an idle machine
 diagrams: env ## measure speed against error anew, and refresh the copies in docs/
+	$(BIN)/python -m workflow.unlock
 	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_gamma2 measure_pathwise measure_cost -- speed_against_error
 	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
 

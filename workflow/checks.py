@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 import yaml
@@ -40,7 +41,7 @@ def check(layers: Layers) -> None:
         # the jobs give them
         warnings.simplefilter("ignore", AssumptionWarning)
         try:
-            validate(config, yaml.safe_load(SCHEMA.read_text(encoding="utf-8")))
+            validate(config, _schema())
             check_outputs(config["outputs"])
             _check_scenes(config)
             _check_names(config)
@@ -54,6 +55,11 @@ def check(layers: Layers) -> None:
             check_costs(config)
         except ConfigError as error:
             raise layers.named(error) from None
+
+
+@cache
+def _schema():
+    return yaml.safe_load(SCHEMA.read_text(encoding="utf-8"))
 
 
 def _refused(config, key, problem):

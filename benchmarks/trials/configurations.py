@@ -16,9 +16,8 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from functools import cache
 from pathlib import Path
-
-import yaml
 
 from benchmarks.trials.mutations import CONFIG, ROOT, SMOKE, Mutation, mutations
 from reproduction.configuration.files import read
@@ -43,15 +42,21 @@ def answer(mutation: Mutation, folder: Path) -> str:
     str
         The error's message, or nothing if it is accepted.
     """
-    path = folder / "mutated.yaml"
-    path.write_bytes(mutation.text)
-    base = yaml.safe_load((ROOT / CONFIG).read_text(encoding="utf-8"))
+    path, content = folder / "mutated.yaml", mutation.content
+    base = [] if mutation.file == CONFIG else [(CONFIG, _configuration())]
     try:
-        layers = [(mutation.file, read(path))]
-        check(Layers(layers if mutation.file == CONFIG else [(CONFIG, base), *layers]))
+        if isinstance(content, bytes):
+            path.write_bytes(content)
+            content = read(path)
+        check(Layers([*base, (mutation.file, content)]))
     except ConfigError as error:
         return f"error: {error}".replace(str(path), mutation.file)
     return ""
+
+
+@cache
+def _configuration():
+    return read(ROOT / CONFIG)
 
 
 def faults(mutation: Mutation, output: str) -> list[str]:
