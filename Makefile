@@ -4,11 +4,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: help env paper smoke test lint format docs benchmark requests peers diagrams verify publish checkers crate lock clean
+.PHONY: help env paper smoke test test-slurm lint format docs benchmark requests peers diagrams verify publish checkers crate lock clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile
 
 paper: env ## environment, all computations, and paper/paper.pdf
 	$(BIN)/python -m workflow.unlock
@@ -20,6 +20,15 @@ smoke: env ## every rule at reduced sizes, into results/smoke
 
 test: env ## the tests, a reduced run of the whole workflow among them
 	$(BIN)/python -m pytest
+
+test-slurm: .venv-slurm/installed ## the reduced run through Slurm gives the same bytes; starts a node if there is none
+	.venv-slurm/bin/python -m tests.slurm.trial
+
+.venv-slurm/installed: environment-lock.txt workflow/envs/slurm-lock.txt pyproject.toml
+	$(PYTHON) -m venv .venv-slurm
+	.venv-slurm/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r environment-lock.txt -r workflow/envs/slurm-lock.txt
+	.venv-slurm/bin/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	touch $@
 
 lint: env ## style and structure of the sources
 	$(BIN)/ruff check .

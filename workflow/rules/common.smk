@@ -44,7 +44,8 @@ def complete(job):
 
     The docstring is the message. The modules that the script imports become inputs. The log and
     the benchmark of <results>/topic/name.nc are <logs>/topic/name.log and
-    <benchmarks>/topic/name.tsv.
+    <benchmarks>/topic/name.tsv. Tables and checks take a second or two and are no jobs for a
+    cluster.
     """
     if job.script is None:
         return
@@ -59,3 +60,5 @@ def complete(job):
     job.set_log(f"<logs>/{name}.log")
     job.benchmark = f"<benchmarks>/{name}.tsv"
     job.conda_env = "../envs/environment.yaml"
+    if job.name.startswith(("table_", "check_")):
+        workflow.localrules(job.name)

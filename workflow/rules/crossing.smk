@@ -53,6 +53,7 @@ rule crossing_monte_carlo:
         halving=rules.crossing_halving.output[0],
     output:
         "<results>/crossing/p={p}.nc",
+    localrule: True
     params:
         p=number("p"),
     script:
@@ -63,6 +64,7 @@ rule crossing_asymptotic:
     """Evaluate the asymptotic formula"""
     output:
         "<results>/crossing/asymptotic.nc",
+    localrule: True
     params:
         **settings("crossing", "scene", "threshold", "horizon", "outputs"),
     script:

@@ -43,6 +43,7 @@ rule values:
     output:
         "<results>/paper/values.json",
         "<results>/paper/numbers.json",
+    localrule: True
     params:
         variance=config["variance"],
         sweep=config["crossing"],
@@ -72,6 +73,7 @@ rule paper:
         recorded=["docs/speed_pde.pdf", "docs/speed_crossing.pdf"],
     output:
         report(PAPER, caption="../report/paper.rst", category="Paper"),
+    localrule: True
     params:
         results=subpath(input.values, ancestor=2),
     script:

@@ -37,6 +37,7 @@ rule sweep_limit:
         solved=expand("<results>/gamma2/{scene}.nc", scene=config["gamma2"]["scenes"]),
     output:
         "<results>/sweep/limit.nc",
+    localrule: True
     params:
         **settings("gamma2", names="scenes"),
         **settings("sweep", "horizon", "outputs"),

@@ -57,6 +57,7 @@ rule variance_monte_carlo:
         halving=rules.variance_halving.output[0],
     output:
         "<results>/variance/monte_carlo.nc",
+    localrule: True
     script:
         "../scripts/variance/monte_carlo.py"
 
