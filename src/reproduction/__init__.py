@@ -19,7 +19,7 @@ packages `configuration`, `jobs` and `rendering` and the modules `agreement`, `e
 `convergence`
     `printed_in_table_4`: the values that the paper prints for a scene and a horizon.
 `gamma2`
-    `compared`: the asymptotic variance by two methods, side by side.
+    `compared`, `require_agreement`: the asymptotic variance by two methods, side by side.
 `finite_p`
     `probabilities`, `powers_of_p`: formulas for crossing probabilities and their errors.
 `limit_theorem`

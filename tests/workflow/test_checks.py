@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.special import ndtr, ndtri
+from scipy.stats import binom
 
 from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.counting import crossing_estimate
@@ -22,6 +23,9 @@ from support import ROOT
 TAU = np.array([0.1, 1.0, 10.0])
 SCRIPTS = ROOT / "workflow" / "scripts"
 PRINTED = {"model": "friction", "noise": "white"}
+binned = runpy.run_path(str(SCRIPTS / "density" / "check.py"))["agreement"]
+biases = runpy.run_path(str(SCRIPTS / "sweep" / "check.py"))["biases"]
+limit_of = runpy.run_path(str(SCRIPTS / "sweep" / "limit.py"))["limit"]
 agreement = runpy.run_path(str(SCRIPTS / "convergence" / "check.py"))["agreement"]
 scheme = runpy.run_path(str(SCRIPTS / "convergence" / "finite_difference.py"))["paper_scheme"]
 deviations = runpy.run_path(str(SCRIPTS / "variance" / "check.py"))["deviations"]
@@ -336,3 +340,79 @@ def test_bands_beside_the_curves_fail(shift, message):
     """They fail by ten standard errors, and by 2.5, which few pointwise bands contain."""
     with pytest.raises(CheckError, match=message):
         containment(*bands(shift=shift))
+
+
+def histogram(paths=10_000, shift=0.0, bias=0.0):
+    """Figure 7 of a normal velocity; expected counts in the place of random ones, shifted."""
+    edges = np.linspace(-3, 3, 13)
+    exact, sampled = (np.diff(ndtr(edges - moved)) / np.diff(edges) for moved in (0.0, shift))
+    values = {
+        "density_y": exact,
+        "density_y_error": 1e-9 + 0 * exact,
+        "histogram_y": np.round(sampled * 0.5 * paths) / 0.5 / paths + bias,
+        "histogram_y_bias": bias + 0 * exact,
+    }
+    return xr.Dataset(
+        {name: ("y", value) for name, value in values.items()} | {"factor": 4 / 3},
+        coords={"y": (edges[1:] + edges[:-1]) / 2},
+    )
+
+
+def test_histograms_of_the_density_pass():
+    """So they do with a bias that halving the step has found."""
+    result = binned([histogram(), histogram(bias=0.2)], ["a", "b"], 10_000)
+    assert np.all(result["deviation"] < 0.01)
+
+
+def test_what_chance_allows_in_a_bin_is_a_bound():
+    """Bernstein's is above the binomial quantile of the same probability, if not far above it."""
+    allowed = binned.__globals__["_allowed"]
+    level, found, paths = 1e-7, histogram().assign(factor=1.0), 10_000
+    probability = found["density_y"].values * 0.5
+    exact = (binom.isf(level / 2, paths, probability) - paths * probability) / paths / 0.5
+    assert np.all(allowed(found, "y", paths, level) > exact)
+    assert np.all(allowed(found, "y", paths, level) < 2 * exact)
+
+
+@pytest.mark.parametrize("wrong", [{"shift": 0.4}, {"shift": np.nan}])
+def test_histograms_beside_the_density_fail(wrong):
+    """A stationary law that is not reached yet, or is solved wrongly; and what is not a number."""
+    with pytest.raises(CheckError, match=r"histogram of y of b .* lengthen density\.time"):
+        binned([histogram(), histogram(**wrong)], ["a", "b"], 10_000)
+
+
+def swept(bias):
+    """Figure 6 of one scene at two p, with a standard error of the bias of 1e-3."""
+    values = {"bias": bias, "bias_error": 1e-3, "probability_error": 2e-3}
+    run = xr.Dataset({k: ("horizon", np.full(2, v)) for k, v in values.items()})
+    return [run, run], {"a": {}}, [1.0, 10.0]
+
+
+def test_a_bias_of_the_sweep_fails():
+    """It may be the standard error and what chance explains."""
+    z = -ndtri(1e-6 / 8)
+    assert float(biases(*swept(1.9e-3 + z * 1e-3))["excess"].max()) == pytest.approx(0.95)
+    with pytest.raises(CheckError, match=r"bias of a at p = 1 .* reduce sweep\.step"):
+        biases(*swept(2.1e-3 + z * 1e-3))
+
+
+@pytest.mark.parametrize(
+    ("sampled", "solved", "message"),
+    [
+        (0.5, 0.5, None),
+        (0.5, 0.56, "gamma.2 of a is 0.56 .* by Monte Carlo; one of the two is wrong"),
+        (-0.01, 0.5, r"may be 0; increase sweep\.variance\.paths"),
+        (0.04, 0.04, "may be 0"),
+    ],
+)
+def test_gamma2_of_the_sweep_is_above_0_and_that_of_the_solver(sampled, solved, message):
+    """Otherwise the limits of figure 6 would be drawn for a wrong gamma."""
+    names = ("mean", "mean_error", "settling", "settling_error", "bias", "bias_error")
+    run = xr.Dataset(dict.fromkeys(names, 0.0) | {"gamma2": sampled, "gamma2_error": 0.01})
+    exact = xr.Dataset({"gamma2": solved, "gamma2_error": 1e-6})
+    given = [run], [exact], {"a": {"threshold": 1.0}}, ["a"], 2.0, 4
+    if message is None:
+        assert float(limit_of(*given)["gamma2"][0]) == 0.5
+    else:
+        with pytest.raises(CheckError, match=message):
+            limit_of(*given)

@@ -14,10 +14,23 @@ rule density:
         "../scripts/density/solve.py"
 
 
+rule check_density:
+    """Check that the histograms of figure 7 agree with the solved densities"""
+    input:
+        densities=expand("<results>/density/{scene}.nc", scene=config["density"]["scenes"]),
+    output:
+        "<results>/density/check/agreement.nc",
+    params:
+        **settings("density", "paths", names="scenes"),
+    script:
+        "../scripts/density/check.py"
+
+
 rule figure_7:
     """Draw figure 7, the invariant density of every scene"""
     input:
-        densities=expand("<results>/density/{scene}.nc", scene=config["density"]["scenes"]),
+        densities=rules.check_density.input.densities,
+        check=rules.check_density.output[0],
     output:
         figure("figure_7"),
     params:

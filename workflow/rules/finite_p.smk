@@ -54,6 +54,7 @@ rule table_9:
     input:
         formulas=rules.finite_p_formulas.output[0],
         monte_carlo=rules.figure_2b.input.monte_carlo,
+        check=rules.check_finite_p.output[0],
     output:
         table("table_9"),
     params:

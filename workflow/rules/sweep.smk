@@ -46,15 +46,29 @@ rule sweep_limit:
         "../scripts/sweep/limit.py"
 
 
-rule figure_6:
-    """Draw figure 6, the crossing probabilities of every scene"""
+rule check_sweep:
+    """Check that the time step's bias of every scene is not above the standard error"""
     input:
         crossing=expand(
             "<results>/sweep/{scene}/p={p}.nc",
             scene=swept(config),
             p=map(label, config["sweep"]["p"]),
         ),
+    output:
+        "<results>/sweep/check.nc",
+    params:
+        **settings("sweep", "p"),
+        scenes=swept(config),
+    script:
+        "../scripts/sweep/check.py"
+
+
+rule figure_6:
+    """Draw figure 6, the crossing probabilities of every scene"""
+    input:
+        crossing=rules.check_sweep.input.crossing,
         limit=rules.sweep_limit.output[0],
+        check=rules.check_sweep.output[0],
     output:
         figure("figure_6"),
     params:
@@ -68,8 +82,9 @@ rule table_6:
     """Typeset table 6, every scene by Monte Carlo"""
     input:
         variance=rules.sweep_limit.input.variance,
-        crossing=rules.figure_6.input.crossing,
-        limit=rules.figure_6.input.limit,
+        crossing=rules.check_sweep.input.crossing,
+        limit=rules.sweep_limit.output[0],
+        check=rules.check_sweep.output[0],
     output:
         table("table_6"),
     params:

@@ -9,12 +9,14 @@ LOOKS = {
 }
 
 
-def invariant(densities, scenes, names):
+def invariant(densities, check, scenes, names):
     """Draw one panel per scene, models in rows and noises in columns.
 
     Parameters
     ----------
     densities : list of xarray.Dataset
+    check : xarray.Dataset
+        They agree with the histograms, or it would not exist.
     scenes : dict
         Name -> the scene's parameters, of these scenes and of others.
     names : list of str

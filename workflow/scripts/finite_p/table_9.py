@@ -6,7 +6,7 @@ import pandas as pd
 from reproduction.rendering.tables import scientific, typeset
 
 
-def comparison(formulas, monte_carlo, horizon):
+def comparison(formulas, monte_carlo, check, horizon):
     """Tabulate the probabilities at one T with the error of each formula.
 
     Parameters
@@ -14,6 +14,8 @@ def comparison(formulas, monte_carlo, horizon):
     formulas : xarray.Dataset
     monte_carlo : list of xarray.Dataset
         One per p of figure 2b.
+    check : xarray.Dataset
+        They agree with exact probabilities, or it would not exist.
     horizon : float
         T.
 

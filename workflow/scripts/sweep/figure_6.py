@@ -6,12 +6,12 @@ from nonsmooth.scenes.scene import Scene
 from reproduction.rendering.plots import LOOKS, ORANGE, draw, scene_panels
 
 
-def sweep(crossing, limit, scenes, p):
+def sweep(crossing, limit, check, scenes, p):
     """Draw one panel per scene, models in rows and noises in columns.
 
     Parameters
     ----------
-    crossing, limit, scenes, p
+    crossing, limit, check, scenes, p
         As for table 6.
 
     Returns

@@ -5,6 +5,7 @@ import numpy as np
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.paths import time_grids
 from reproduction.errors import CheckError
+from reproduction.gamma2 import require_agreement
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 
@@ -34,8 +35,8 @@ def limit(variance, solved, scenes, names, horizon, outputs):
     Raises
     ------
     CheckError
-        If the observable is not centred, or the bias of the time step not below a hundredth
-        of gamma^2.
+        If the observable is not centred, gamma^2 is not settled, cannot be told from 0 or differs
+        from that of the Poisson equation, or the bias of the time step is above its error.
     """
     horizons = time_grids.equidistant(horizon, outputs)
     rates, errors, curves = [], [], []
@@ -56,7 +57,13 @@ def limit(variance, solved, scenes, names, horizon, outputs):
                 f"the time step's bias of {name} is above the standard error; reduce sweep.step"
             )
         error = np.linalg.norm([value[k] for k in ("gamma2_error", "bias", "bias_error")])
+        if not value["gamma2"] > ALLOWED * error:
+            raise CheckError(
+                f"gamma^2 of {name} is {value['gamma2']:.2g} +- {error:.1g} and may be 0; increase "
+                "sweep.variance.paths, or choose another observable if int_0^t g stays bounded"
+            )
         if name in exact:
+            require_agreement(name, exact[name], value)
             value["gamma2"], error = (float(exact[name][k]) for k in ("gamma2", "gamma2_error"))
         rates.append(value["gamma2"])
         errors.append(error)

@@ -6,7 +6,7 @@ from nonsmooth.scenes.scene import Scene
 from reproduction.rendering.tables import described, typeset
 
 
-def sweep(variance, crossing, limit, scenes, p):
+def sweep(variance, crossing, limit, check, scenes, p):
     """Tabulate one row per scene; probabilities at the last horizon.
 
     Parameters
@@ -17,6 +17,8 @@ def sweep(variance, crossing, limit, scenes, p):
         One per scene and p, p changing fastest.
     limit : xarray.Dataset
         Over (scene, horizon).
+    check : xarray.Dataset
+        The bias of the step is small, or it would not exist.
     scenes : dict
         Name -> the scene's parameters and its threshold.
     p : list of float
