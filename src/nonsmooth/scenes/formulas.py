@@ -1,13 +1,27 @@
-"""Formulas given as text: read without `eval`, kept symbolic, evaluated on arrays."""
+"""Formulas given as text: one expression of arithmetic, kept symbolic, evaluated on arrays.
 
+Text is never run. Python parses it to a syntax tree, of which only numbers, names, arithmetic and
+calls of listed functions are read; each is replaced by the sympy expression that it means.
+"""
+
+import ast
+import math
+import operator
+import re
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 import numpy as np
 import sympy
-from asteval import Interpreter
 
-from nonsmooth.errors import ExpressionError
+from nonsmooth.errors import ExpressionError, quoted
+from nonsmooth.scenes import tuning
+from nonsmooth.scenes.constant_parts import (
+    ConstantParts,
+    evaluated,
+    in_range,
+    require_small_numbers,
+)
 
 FUNCTIONS = {
     "abs": sympy.Abs,
@@ -24,40 +38,24 @@ FUNCTIONS = {
     "sqrt": sympy.sqrt,
     "tanh": sympy.tanh,
 }
-_ARITHMETIC_ONLY = dict.fromkeys(
-    [
-        "assign",
-        "attribute",
-        "augassign",
-        "boolop",
-        "compare",
-        "delete",
-        "dict",
-        "dictcomp",
-        "for",
-        "formattedvalue",
-        "functiondef",
-        "if",
-        "ifexp",
-        "import",
-        "importfrom",
-        "joinedstr",
-        "lambda",
-        "list",
-        "listcomp",
-        "print",
-        "raise",
-        "set",
-        "setcomp",
-        "slice",
-        "subscript",
-        "try",
-        "tuple",
-        "while",
-        "with",
-    ],
-    False,
-)
+_OPERATIONS = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+    ast.UAdd: operator.pos,
+    ast.USub: operator.neg,
+}
+_COMPARED = ("max", "min")  # take two arguments or more, the other functions one
+# sums and products without brackets are deep in the syntax tree, but flat in sympy's
+_FLAT = (ast.Add, ast.Sub), (ast.Mult, ast.Div)
+_FOREIGN = re.compile(r"[^A-Za-z0-9_+\-*/(). ,]")
+_NUMBER = r"(?>(?:\d[\d_]*\.?[\d_]*|\.\d[\d_]*)(?:[eE][+-]?\d[\d_]*)?)"
+_NUMBER_AND_NAME = re.compile(rf"(?<![\w.]){_NUMBER}[A-Za-z]\w*")
+_EXAMPLE = "write arithmetic, for example x**2/2 + 0.3*cos(x)"
+_PART = 30  # characters of a part of a formula in a message, which has the formula already
+_TOO_DEEP = "it is nested too deeply; simplify it"
 
 
 def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
@@ -66,10 +64,11 @@ def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
     Parameters
     ----------
     text : str
-        Python arithmetic with the functions of `FUNCTIONS` and the constant ``pi``,
-        for example ``"x**2/2 + 0.3*cos(x)"``.
+        One expression of numbers, the variables, ``+ - * / **``, parentheses, the functions of
+        `FUNCTIONS` and the constant ``pi``, for example ``"x**2/2 + 0.3*cos(x)"``. Line breaks are
+        white space.
     variables : iterable of sympy.Symbol
-        The variables the formula may contain.
+        The variables the formula may contain, all real.
 
     Returns
     -------
@@ -78,31 +77,170 @@ def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
     Raises
     ------
     ExpressionError
-        If the text is not arithmetic, or uses a name outside the white list.
+        If the text is anything else, if a part of it is not a real number of double precision, or
+        if it is larger than `tuning.FORMULA` allows.
     """
-    names = {symbol.name: symbol for symbol in variables}
-    interpreter = Interpreter(
-        symtable={"pi": sympy.pi} | FUNCTIONS | names, use_numpy=False, config=_ARITHMETIC_ONLY
-    )
-    del interpreter.symtable["print"]
     try:
-        value = interpreter.eval(text, raise_errors=True, show_errors=False)
-    except Exception as error:  # asteval re-raises whatever the formula provoked
-        reason = " ".join(str(error).split()) or type(error).__name__
+        tree, line = _syntax_tree(text)
+        return _Reader(line, variables).expression(tree)
+    except ExpressionError as error:
+        reason = str(error)
+    except RecursionError:
+        reason = _TOO_DEEP
+    raise ExpressionError(f"cannot read the formula {quoted(text)}: {reason}")
+
+
+def _syntax_tree(text):
+    """Return the syntax tree of a formula, and the formula as one line."""
+    if not isinstance(text, str):
+        raise ExpressionError("it is not text; put it in quotes, for example 'x**2/2'")
+    if len(text) > tuning.FORMULA.length:
+        raise ExpressionError(f"it has {len(text)} characters; use at most {tuning.FORMULA.length}")
+    line = " ".join(text.split())
+    if not line:
+        raise ExpressionError(f"it is empty; {_EXAMPLE}")
+    if foreign := _FOREIGN.search(line):
+        cure = "write ** for powers" if foreign[0] == "^" else _EXAMPLE
+        raise ExpressionError(f"{quoted(foreign[0])} means nothing in a formula; {cure}")
+    if glued := _NUMBER_AND_NAME.search(line):
+        raise ExpressionError(f"{quoted(glued[0], _PART)} is no number; write * for a product")
+    try:
+        return ast.parse(line, mode="eval").body, line
+    except (SyntaxError, ValueError, MemoryError) as error:
+        place = getattr(error, "offset", None) or 1
         raise ExpressionError(
-            f"cannot read the formula {text!r} ({reason}); use the variables "
-            f"{', '.join(sorted(names))} and the functions {', '.join(FUNCTIONS)}"
+            f"it is not one expression, see {quoted(line[place - 1 :], _PART)}; "
+            "write * for every product and close every bracket"
         ) from None
-    # sympify evaluates strings, so it must never see one
-    expression = sympy.sympify(value) if isinstance(value, int | float | sympy.Expr) else None
-    infinite = (sympy.zoo, sympy.nan, sympy.oo, -sympy.oo)
-    if (
-        not isinstance(expression, sympy.Expr)
-        or expression.is_extended_real is False
-        or expression.has(*infinite)
-    ):
-        raise ExpressionError(f"the formula {text!r} is not a real expression; write arithmetic")
-    return expression
+
+
+class _Reader:
+    """Turns a syntax tree into what it means: a Python number or a sympy expression.
+
+    Numbers are computed as Python computes them, all else as sympy does.
+    """
+
+    def __init__(self, line, variables):
+        self._line = line
+        self._variables = {symbol.name: symbol for symbol in variables}
+        self._constants = ConstantParts()
+        self._operations = self._compared = 0
+
+    def expression(self, tree):
+        return sympy.sympify(self._read(tree, 0))  # a number or an expression, never text
+
+    def _read(self, node, depth):
+        if depth > tuning.FORMULA.depth:
+            raise ExpressionError(_TOO_DEEP)
+        match node:
+            case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
+                return self._number(node)
+            case ast.Name():
+                return self._named(node.id)
+            case ast.UnaryOp(op=ast.UAdd() | ast.USub()):
+                self._count()
+                return self._checked(
+                    _OPERATIONS[type(node.op)](self._read(node.operand, depth + 1))
+                )
+            case ast.BinOp() if type(node.op) in _OPERATIONS:
+                self._count()
+                return self._checked(self._operation(node, depth))
+            case ast.Call(func=ast.Name(), keywords=[]):
+                self._count()
+                return self._checked(self._call(node, depth))
+            case ast.Call(keywords=[]):
+                raise ExpressionError(
+                    f"{self._quoted(node.func)} is no function; for a product write *"
+                )
+        raise ExpressionError(f"{self._quoted(node)} is not arithmetic; {_EXAMPLE}")
+
+    def _quoted(self, node):
+        return quoted(ast.get_source_segment(self._line, node), _PART)
+
+    def _count(self):
+        self._operations += 1
+        if self._operations > tuning.FORMULA.operations:
+            raise ExpressionError(
+                f"it has more than {tuning.FORMULA.operations} operations; simplify it"
+            )
+
+    def _number(self, node):
+        mantissa = re.split("[eE]", ast.get_source_segment(self._line, node))[0]
+        lost = node.value == 0 and mantissa.strip("0._")
+        return in_range(math.inf if lost else node.value)
+
+    def _named(self, name):
+        if name == "pi":
+            return sympy.pi
+        if name in self._variables:
+            return self._variables[name]
+        if name in FUNCTIONS:
+            raise ExpressionError(f"{name} is a function; write {name}(...)")
+        raise self._unknown(name)
+
+    def _unknown(self, name):
+        known = ", ".join([*sorted(self._variables), "pi", *FUNCTIONS])
+        return ExpressionError(f"{quoted(name, _PART)} is unknown; use {known}")
+
+    def _operation(self, node, depth):
+        kind = type(node.op)
+        flat = isinstance(node.left, ast.BinOp) and any(
+            kind in kinds and isinstance(node.left.op, kinds) for kinds in _FLAT
+        )
+        left = self._read(node.left, depth if flat else depth + 1)
+        right = self._read(node.right, depth + 1)
+        if kind is ast.Div and right == 0:
+            raise ExpressionError("it divides by zero; change that")
+        if kind is ast.Pow:
+            self._require_power(left, right)
+        value = _OPERATIONS[kind](left, right)
+        if kind in (ast.Mult, ast.Div) and value == 0 and 0 not in (left, right):
+            return math.inf  # the product of numbers has underflown
+        return value
+
+    def _require_power(self, base, exponent):
+        """Refuse powers that are not real, or have too many digits to be computed."""
+        number, power = self._double(base), self._double(exponent)
+        if number == 0 and not (power is not None and power >= 0):
+            raise ExpressionError("it takes a power of zero that is not positive; change that")
+        if number is not None and power is not None:
+            evaluated(sympy.Pow, [number, power])
+        elif number is not None and number < 0:
+            raise ExpressionError("a negative number to a variable power is not real; use abs(...)")
+        if isinstance(base, sympy.Expr) or isinstance(exponent, sympy.Expr):
+            require_small_numbers(sympy.sympify(exponent))
+
+    def _call(self, node, depth):
+        name, count = node.func.id, len(node.args)
+        if name in self._variables or name == "pi":
+            raise ExpressionError(f"{name} is no function; for a product write {name}*(...)")
+        if name not in FUNCTIONS:
+            raise self._unknown(name)
+        if count < 2 if name in _COMPARED else count != 1:
+            wanted = "two arguments or more" if name in _COMPARED else "one argument"
+            raise ExpressionError(f"{name} takes {wanted}, but here {count}; correct that")
+        self._compared += count if name in _COMPARED else 0
+        if self._compared > tuning.FORMULA.compared:
+            raise ExpressionError(
+                f"its max and min have more than {tuning.FORMULA.compared} arguments; simplify it"
+            )
+        arguments = [self._read(argument, depth + 1) for argument in node.args]
+        values = [self._double(argument) for argument in arguments]
+        if None not in values:
+            evaluated(FUNCTIONS[name], values)
+        if name == "exp" and sympy.sympify(arguments[0]).has(sympy.log):
+            require_small_numbers(arguments[0])  # because exp(m log x) is x**m
+        return FUNCTIONS[name](*arguments)
+
+    def _double(self, value):
+        """Return the value of a number or constant expression, None if it has variables."""
+        return self._constants.value(value) if isinstance(value, sympy.Expr) else float(value)
+
+    def _checked(self, value):
+        if isinstance(value, sympy.Expr):
+            self._constants.value(value)
+            return value
+        return in_range(value)
 
 
 @lru_cache(maxsize=256)

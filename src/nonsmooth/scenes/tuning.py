@@ -32,5 +32,24 @@ class LinearDrift:
     mismatch: float = 1e-6  # chosen: relative difference of slopes that rounding may cause
 
 
+@dataclass(frozen=True)
+class Formula:
+    """How large a formula may be, so that it is read within a second and has sensible values."""
+
+    # chosen: several times what a polynomial of degree four in four variables takes
+    length: int = 2000
+    operations: int = 200  # measured: such formulas take sympy up to 0.5 s
+    depth: int = 30  # measured: sympy descends some ten calls a level; Python allows 1000 in all
+    # measured: max and min compare all their arguments with one another, 3 ms for each pair
+    compared: int = 12
+    # chosen: the range of double precision, less some digits for sums and products
+    largest: float = 1e300
+    smallest: float = 1e-300
+    # chosen: x**100 is beyond double precision at x = 1300; numbers to this power have at most
+    # 30,000 digits, which sympy computes at once
+    exponent: int = 100
+
+
 FAR_OUT = FarOut()
+FORMULA = Formula()
 LINEAR_DRIFT = LinearDrift()
