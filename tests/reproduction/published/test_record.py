@@ -61,7 +61,7 @@ def test_the_parameters_are_the_own_ones_without_the_seed(results):
         artifact.write(EMPTY, path, history)
         return gather(results).artifacts["gamma2/a.nc"]["parameters"]
 
-    one = parameters("rule gamma2(tol=1, seed=7); nonsmooth 0.2")
+    one = parameters("rule gamma2(tol=1, seed=7); version 2")
     assert one == parameters("rule b(); x\nrule gamma2(tol=1, seed=8); nonsmooth 0.3")
     assert one != parameters("rule gamma2(tol=2, seed=7); nonsmooth 0.2")
 
@@ -158,7 +158,7 @@ def published(repository, *arguments):
 
 
 def test_a_run_is_verified_and_a_changed_one_is_not(finished):
-    """Against itself, with a number within its error, with one beyond, and with a lost artifact."""
+    """Against itself, with numbers within and beyond errors, with other bytes, with a lost file."""
     assert published(finished, "publish").returncode == 0
     same = published(finished, "verify")
     assert (same.returncode, same.stderr) == (0, "")
@@ -181,6 +181,15 @@ def test_a_run_is_verified_and_a_changed_one_is_not(finished):
     assert "Traceback" not in beyond.stderr
 
     table.write_text(before)
+    path = results / "gamma2" / "friction_white.nc"
+    data = artifact.read(path)
+    data["gamma2"] += data["gamma2_error"] / 2
+    artifact.write(data, path, data.attrs["history"])
+    other_bytes = published(finished, "verify")
+    assert other_bytes.returncode == 0
+    (files,) = (line for line in other_bytes.stdout.splitlines() if line.startswith("artifacts"))
+    assert files.split()[-2:] == ["1", "0"]
+
     (results / "errata" / "errata.nc").unlink()
     lost = published(finished, "verify")
     assert lost.returncode == 1
