@@ -161,7 +161,7 @@ def _trajectories(topic):
     sizes = _sizes(
         ("trajectories",), topic, step=["step"], horizon=["horizon"], outputs=["outputs"]
     )
-    seconds = 3 * len(topic["n"]) * (JOB_SECONDS + STEP_SECONDS[2] * BLOCK * steps)
+    seconds = 3 * (JOB_SECONDS + len(topic["n"]) * STEP_SECONDS[2] * BLOCK * steps)
     seconds += 1e-6 * topic["outputs"] * len(topic["n"])
     yield Cost(sizes, seconds, JOB_BYTES + 100 * topic["outputs"] * len(topic["n"]))
 
@@ -247,6 +247,11 @@ def _poisson(dimension, tolerance):
     return seconds * max(1.0, usual / tolerance) ** 0.5
 
 
+def _solver_bytes(seconds):
+    """Bytes of a solver; the largest grids of a minute take half a gigabyte."""
+    return JOB_BYTES + 0.3 * GB * max(1.0, seconds / 40)
+
+
 def _solved(section, scenes, tolerance):
     """Cost of the Poisson equation; the scene that takes longest is to blame."""
     seconds = {
@@ -256,7 +261,7 @@ def _solved(section, scenes, tolerance):
     total = sum(
         JOB_SECONDS + _poisson(scene.dimension, tolerance[scene.dimension - 1]) for scene in scenes
     )
-    return Cost(seconds, total, JOB_BYTES + 1.5 * GB)
+    return Cost(seconds, total, _solver_bytes(max(seconds.values())))
 
 
 def _gamma2(topic, known):
@@ -431,7 +436,8 @@ def _speed(topic):
         for k, tolerances in enumerate(own["tolerances"])
         for tolerance in tolerances
     ]
-    yield Cost(dict(solved), own["rounds"] * sum(one for _, one in solved), JOB_BYTES + 1.5 * GB)
+    times = [one for _, one in solved]
+    yield Cost(dict(solved), own["rounds"] * sum(times), _solver_bytes(max(times)))
 
     own, section = topic["pathwise"], ("speed_against_error", "pathwise")
     steps = 2 ** own["reference"]
@@ -481,6 +487,6 @@ def _speed_cost(own, rounds):
     marched = sum(own["horizons"]) / scheme["time_step"]
     memory = JOB_BYTES + NODE_BYTES * scheme["nodes"] + MARCH_BYTES * marched
     yield Cost(sizes, rounds * NODE_SECONDS * scheme["nodes"] * marched, memory)
-    hardest = POISSON[4][1] * max(1.0, POISSON[4][0] / own["tolerance"]) ** 0.5
+    hardest = _poisson(4, own["tolerance"])
     values = {(*section, "tolerance"): 1 / own["tolerance"]}
-    yield Cost(values, rounds * hardest, JOB_BYTES + 1.5 * GB)
+    yield Cost(values, rounds * hardest, _solver_bytes(hardest))

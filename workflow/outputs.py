@@ -69,7 +69,7 @@ def _place(name, text):
 
 def _require_own(name, text, place):
     """Refuse places where sources are, or that hold everything."""
-    if name == "results" and (place == Path.home() or place in (ROOT, *ROOT.parents)):
+    if place in (ROOT, *ROOT.parents, Path.home()):
         raise _refused(name, text, "holds other files than results; choose a folder below it")
     if place.parts[1:2] in (("proc",), ("sys",), ("dev",)) and place.parts[2:3] != ("shm",):
         raise _refused(name, text, "is a folder of the operating system; choose another")
