@@ -145,6 +145,7 @@ def crate_of(jobs: list[Job], target: str, config: str, agent: str) -> ROCrate:
     files = {path: _file(crate, path) for path in sorted(made | sources)}
     for path in sorted({*ABOUT, *_workflow_files()} - files.keys()):
         _file(crate, path)
+    crate.dereference("README.md")["about"] = crate.root_dataset
     main["hasPart"] = [crate.dereference(path) for path in _workflow_files() if ".smk" in path]
     who = {"agent": {"@id": crate.add(_person(crate, agent)).id}} if agent else {}
     _actions(crate, jobs, files, who)
