@@ -18,6 +18,7 @@ from workflow.experiment import (
     sweep_halving,
     swept,
 )
+from workflow.failures import hints
 
 # config.yaml, then what the command line lays over it
 try:
@@ -80,3 +81,8 @@ include: "workflow/rules/speed_against_error.smk"
 
 for job in workflow.rules:
     complete(job)
+
+
+onerror:
+    for line in hints(log):
+        print(line, file=sys.stderr)
