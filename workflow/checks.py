@@ -12,13 +12,13 @@ from nonsmooth.errors import AssumptionWarning, NonsmoothError
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.noises import NOISES, Hamiltonian, Langevin
-from nonsmooth.scenes.scene import Scene, by_formulas
+from nonsmooth.scenes.scene import Scene
 from reproduction.configuration.layers import Layers
 from reproduction.configuration.schema import dotted, shown, validate
 from reproduction.errors import ConfigError
 from reproduction.plasticity import yielding_oscillator
 from workflow.costs import check_costs
-from workflow.experiment import ergodic_scenes, finite
+from workflow.experiment import ergodic_scenes, finite, scene_of
 from workflow.outputs import check_outputs
 
 SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"
@@ -89,7 +89,7 @@ def _scene(key, parameters):
     with _blamed(*key, "potential"):
         Scene(model, noise, potential=parameters["potential"]).potential_expression  # noqa: B018
     with _blamed(*key, "observable"):
-        return by_formulas(parameters)
+        return scene_of(parameters)
 
 
 def _scenes(config) -> Iterator[tuple[tuple, dict]]:
@@ -140,7 +140,7 @@ def _check_names(config):
     ):
         _check_known(config, key, known)
     for name, parameters in ergodic_scenes(config).items():
-        if Scene(**parameters).dimension > 2:
+        if scene_of(parameters).dimension > 2:
             raise _refused(
                 config, ("theorems", "ergodicity", "scenes"), f"has {name!r}, which has more than "
                 "two state variables; choose scenes with one or two"
@@ -183,7 +183,7 @@ def _check_dry_friction(config):
     """Refuse other scenes for figures 2a, 2b and table 4, whose solvers take the velocity alone."""
     for topic in ("variance", "crossing", "convergence"):
         parameters = config[topic]["scene"]
-        scene = Scene(**parameters)
+        scene = scene_of(parameters)
         key = (topic, "scene", "model" if parameters["model"] != "friction" else "potential")
         key = (topic, "scene", "noise") if scene.noise.kind != "white" else key
         if scene.state != ("y",) or scene.noise.kind != "white":
@@ -211,7 +211,7 @@ def _check_grid(config, key, parameters, many, scheme):
     # the error takes a mesh twice as wide
     width = 4 * scheme["half_width"] / (nodes - 1)
     for n in many:
-        scene = Scene(**parameters | {"n": n})
+        scene = scene_of(parameters | {"n": n})
         drift = vectorised(scene.numerical_drift()[symbols.y], (symbols.y,))
         if abs(drift(scheme["half_width"])) * width > scene.noise.sigma**2:
             raise _refused(

@@ -11,11 +11,11 @@ from math import ceil, isfinite
 
 import psutil
 
-from nonsmooth.scenes.scene import Scene, by_formulas
 from reproduction.configuration.schema import dotted, shown
 from reproduction.errors import ConfigError
 from reproduction.plasticity import yielding_oscillator
 from reproduction.time_scales import contact_time
+from workflow.experiment import scene_of
 
 GB = 1e9
 # imports, compiled kernels and their arrays: benchmarks/tables and benchmarks/crossing
@@ -265,10 +265,10 @@ def _solved(section, scenes, tolerance):
 
 
 def _gamma2(topic, known):
-    scenes = [Scene(**known[name]["scene"]) for name in topic["scenes"]]
+    scenes = [scene_of(known[name]["scene"]) for name in topic["scenes"]]
     yield _solved(("gamma2", "tolerance"), scenes, topic["tolerance"])
     own = topic["potentials"]
-    scenes = [by_formulas(parameters) for parameters in own["scenes"]]
+    scenes = [scene_of(parameters) for parameters in own["scenes"]]
     yield _solved(("gamma2", "potentials", "tolerance"), scenes, own["tolerance"])
     sizes = _sizes(
         ("gamma2", "potentials"),
@@ -287,7 +287,7 @@ def _gamma2(topic, known):
 
 def _sweep(topic):
     own = topic["variance"]
-    scenes = [Scene(**topic["scenes"][name]["scene"]) for name in topic["simulated"]]
+    scenes = [scene_of(topic["scenes"][name]["scene"]) for name in topic["simulated"]]
     sizes = _sizes(
         ("sweep",),
         topic,
@@ -339,7 +339,7 @@ def _theorems(topic):
 
 
 def _densities(topic, known):
-    scenes = [Scene(**known[name]["scene"]) for name in topic["scenes"]]
+    scenes = [scene_of(known[name]["scene"]) for name in topic["scenes"]]
     sizes = _sizes(("density",), topic, paths=["paths"], time=["time"], step=["step"])
     seconds = sum(
         JOB_SECONDS + _simulated(scene.dimension, topic["paths"], topic["time"], topic["step"])
@@ -350,7 +350,7 @@ def _densities(topic, known):
 
 
 def _limit_theorem(topic, known):
-    scenes = [Scene(**known[name]["scene"]) for name in topic["scenes"]]
+    scenes = [scene_of(known[name]["scene"]) for name in topic["scenes"]]
     sizes = _sizes(("limit_theorem",), topic, paths=["paths"], p=["p"], step=["step"])
     seconds = sum(
         JOB_SECONDS + _simulated(scene.dimension, topic["paths"], sum(topic["p"]), topic["step"])
@@ -382,7 +382,7 @@ def _rates(topic):
     weak, seconds, finest = topic["weak"], 0.0, topic["longest_step"]
     for entry in topic["scenes"].values():
         for n in entry["n"]:
-            scene = Scene(**entry["scene"], n=n)
+            scene = scene_of(entry["scene"] | {"n": n})
             step = min(topic["longest_step"], topic["resolution"] * contact_time(scene))
             finest = min(finest, step)
             seconds += PAIR_SECONDS * 1.5 * topic["paths"] * (topic["horizon"] / step + 1)

@@ -138,7 +138,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--command", type=int, metavar="N", help="every N-th through snakemake")
     every = parser.parse_args().command
-    chosen, bad, counts, start = mutations(), [], Counter(), time.perf_counter()
+    chosen, bad, counts, start = mutations(), 0, Counter(), time.perf_counter()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if every:
@@ -153,14 +153,14 @@ def main() -> None:
             counts.update(["refused" if output else "accepted", *found])
             counts["legal"] += mutation.legal
             if found:
-                bad.append((mutation, found, output))
-    for mutation, found, output in bad:
-        where = ".".join(map(str, mutation.key))[:80]
-        print(f"{', '.join(found)}: {mutation.file}, {mutation.kind}, {where}: {output[:300]}")
+                bad += 1
+                where = ".".join(map(str, mutation.key))[:80]
+                what = f"{', '.join(found)}: {mutation.file}, {mutation.kind}, {where}"
+                print(f"{what}: {output[:300]}", flush=True)
     print(f"mutations                     {len(chosen)}, of which legal {counts.pop('legal')}")
     for what, count in counts.most_common():
         print(f"{what:30}{count}")
-    print(f"{'bad':30}{len(bad)}")
+    print(f"{'bad':30}{bad}")
     print(f"{'seconds':30}{time.perf_counter() - start:.0f}")
     sys.exit(bool(bad))
 
