@@ -33,7 +33,8 @@ def write_whole(path: str | Path, content: bytes) -> None:
         If the file cannot be written; the cure depends on the reason.
     """
     path = Path(path)
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    # a job that survived its killed workflow may write the same file
+    partial = path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
