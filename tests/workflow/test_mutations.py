@@ -39,4 +39,3 @@ def test_the_command_answers_likewise(tmp_path):
     for mutation in [*chosen, LEGAL[0]]:
         output, found = by_command(mutation, tmp_path)
         assert not [fault for fault in found if not fault.startswith("slower")], output
-
