@@ -134,6 +134,7 @@ def read(path: str | Path) -> xr.Dataset:
 
 
 def _encoded(dataset):
+    folder = "TMPDIR"
     try:
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "artifact.nc"
@@ -142,7 +143,8 @@ def _encoded(dataset):
     except (OSError, RuntimeError) as error:
         # no library says why, but a new file in a new folder lacks nothing but space
         raise ArtifactError(
-            f"cannot write a temporary file ({error}); free space there or set TMPDIR"
+            f"cannot write temporary files in {folder} ({error}); free space there, or set "
+            "TMPDIR to a folder on another disk"
         ) from None
 
 

@@ -103,7 +103,7 @@ def test_no_space_for_temporary_files(tmp_path, monkeypatch):
         raise RuntimeError("NetCDF: HDF error")
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
-    with pytest.raises(ArtifactError, match=r"\(NetCDF: HDF error\); free space there or set"):
+    with pytest.raises(ArtifactError, match=r"in /.* \(NetCDF: HDF error\); free space there, or"):
         artifact.write(example(), tmp_path / "x.nc", "")
     assert list(tmp_path.iterdir()) == []
 
