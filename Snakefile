@@ -3,7 +3,6 @@
 import sys
 from pathlib import Path
 
-from reproduction.configuration.files import read
 from reproduction.configuration.layers import Layers
 from reproduction.errors import ConfigError
 from workflow.checks import check
@@ -21,18 +20,10 @@ from workflow.experiment import (
 from workflow.failures import hints
 
 # config.yaml, then what the command line lays over it
+given = workflow.config_settings
+defaults = [] if given.replace_workflow_config else ["config.yaml"]
 try:
-    check(
-        Layers(
-            [
-                *(
-                    (str(file), read(file))
-                    for file in ("config.yaml", *workflow.overwrite_configfiles)
-                ),
-                ("--config", workflow.config_settings.config),
-            ]
-        )
-    )
+    check(Layers.of_files([*defaults, *workflow.overwrite_configfiles], given.config))
 except ConfigError as error:
     sys.exit(f"error: {error}")
 

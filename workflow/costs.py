@@ -431,6 +431,9 @@ def _speed(topic):
     steps = own["times"][-1] / own["step"]
     seconds = 9 * own["rounds"] * sum(own["paths"]) * steps * STEP_SECONDS[4]
     yield Cost(sizes, seconds, JOB_BYTES + 64 * max(own["paths"]))
+    degree = max(own["degrees"])
+    values = {(*section, "degrees"): degree}
+    yield Cost(values, own["rounds"] * 1e-5 * degree**3, JOB_BYTES + 8e4 * degree**2)
     solved = [
         ((*section, "tolerances", k), 3 * _poisson(k + 2, tolerance))
         for k, tolerances in enumerate(own["tolerances"])

@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from collections import Counter
 from functools import cache
 from pathlib import Path
@@ -51,6 +52,8 @@ def answer(mutation: Mutation, folder: Path) -> str:
         check(Layers([*base, (mutation.file, content)]))
     except ConfigError as error:
         return f"error: {error}".replace(str(path), mutation.file)
+    except Exception:  # what snakemake would print; it is counted
+        return traceback.format_exc()
     return ""
 
 
@@ -156,7 +159,7 @@ def main() -> None:
                 bad += 1
                 where = ".".join(map(str, mutation.key))[:80]
                 what = f"{', '.join(found)}: {mutation.file}, {mutation.kind}, {where}"
-                print(f"{what}: {output[:300]}", flush=True)
+                print(f"{what}: {output[-300:]}", flush=True)
     print(f"mutations                     {len(chosen)}, of which legal {counts.pop('legal')}")
     for what, count in counts.most_common():
         print(f"{what:30}{count}")

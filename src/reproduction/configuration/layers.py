@@ -3,8 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
+from pathlib import Path
 from typing import Any
 
+from reproduction.configuration.files import read
 from reproduction.errors import ConfigError
 
 
@@ -19,6 +21,32 @@ class Layers:
     """
 
     layers: Sequence[tuple[str, dict]]
+
+    @classmethod
+    def of_files(cls, files: Sequence[str | Path], command_line: dict) -> "Layers":
+        """Read files and lay the command line's own keys over them.
+
+        Parameters
+        ----------
+        files : sequence of str or Path
+        command_line : dict
+            Keys of ``--config``.
+
+        Returns
+        -------
+        Layers
+
+        Raises
+        ------
+        ConfigError
+            If a file cannot be read.
+        """
+        own = []
+        for file in map(Path, files):
+            inside = file.is_relative_to(Path.cwd())
+            name = file.relative_to(Path.cwd()) if inside else file
+            own.append((str(name), read(name)))
+        return cls([*own, ("--config", command_line)])
 
     @property
     def merged(self) -> dict[str, Any]:

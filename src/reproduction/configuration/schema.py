@@ -10,6 +10,7 @@ import jsonschema
 
 from reproduction.errors import ConfigError
 
+LARGEST = 1e300  # beyond, arithmetic overflows
 SHOWN = 80  # characters of a value in a message
 
 
@@ -39,8 +40,10 @@ def validate(config: dict, schema: dict) -> None:
         If a key is unknown, missing or out of range: one line that names it and what to do.
     """
     for key, value in numbers(config):
-        if math.isnan(value):
+        if isinstance(value, float) and math.isnan(value):
             raise ConfigError(f"{dotted(key)} is not a number; give it one", key=key)
+        if LARGEST < abs(value) != math.inf:
+            raise ConfigError(f"{dotted(key)} = {shown(value)} is too large; lower it", key=key)
     errors = list(_Validator(schema).iter_errors(config))
     if errors:
         raise _explained(min(errors, key=_severity), schema)

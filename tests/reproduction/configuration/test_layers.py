@@ -34,3 +34,16 @@ def test_the_origin_of_a_key():
 def test_an_error_is_named_after_the_origin_of_its_key():
     """The origin begins the message."""
     assert str(LAYERS.named(ConfigError("is bad", key=("d",)))) == "--config: is bad"
+
+
+def test_files_are_called_as_they_lie_in_the_folder(tmp_path, monkeypatch):
+    """Those elsewhere by their full names; the command line comes last."""
+    folder = tmp_path / "here"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    (folder / "a.yaml").write_text("a: 1\nb: 1\n")
+    (tmp_path / "b.yaml").write_text("b: 2\n")
+    layers = Layers.of_files([folder / "a.yaml", tmp_path / "b.yaml"], {"c": 3})
+    assert layers.merged == {"a": 1, "b": 2, "c": 3}
+    names = [layers.origin((key,)) for key in "abc"]
+    assert names == ["a.yaml", str(tmp_path / "b.yaml"), "--config"]
