@@ -4,9 +4,9 @@ import time
 
 from nonsmooth.boundary_layer.milne import solved_constants
 from nonsmooth.boundary_layer.sampled import sampled_kappa
-from nonsmooth.errors import SceneError
+from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
 from nonsmooth.estimate import Estimate
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.scene import Scene, require_random
 
 SIDES = ("lower", "upper")
 
@@ -42,13 +42,15 @@ def extrapolation_length(
     Raises
     ------
     SceneError
-        If the scene is of another kind, or the side is unknown.
+        If an argument is out of range, or the scene of another kind.
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
-    if side not in SIDES:
-        raise SceneError(f"unknown side {side!r}; choose {' or '.join(map(repr, SIDES))}")
     began = time.perf_counter()
+    require_random(scene)
+    tol = None if tol is None else require_tolerance(tol)
+    side = require_choice("side", side, SIDES)
+    seed, threads = require_seed(seed), require_threads(threads)
     solved = solved_constants(scene, tol)
     if solved is None:
         return sampled_kappa(scene, tol, seed, threads)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import erf, erfc, erfcx
 
+from nonsmooth.checks import require_numbers
 from nonsmooth.crossing import tuning
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.thresholds import bounds
@@ -161,10 +162,15 @@ class _Path:
     """Levels and horizon, broadcast and checked, and the terms of the two series."""
 
     def __init__(self, b, T, lower):
-        b = np.asarray(b, dtype=float)
-        lower = -b if lower is None else np.asarray(lower, dtype=float)
-        b, lower, T = np.broadcast_arrays(b, lower, np.asarray(T, dtype=float))
-        # a nan fails none of these tests, and the result is nan, too
+        b, T = require_numbers("b", b), require_numbers("T", T)
+        lower = -b if lower is None else require_numbers("lower", lower)
+        try:
+            b, lower, T = np.broadcast_arrays(b, lower, T)
+        except ValueError:
+            raise SceneError(
+                f"b, T and lower have the shapes {b.shape}, {T.shape} and {lower.shape}; give "
+                "shapes that broadcast"
+            ) from None
         for wrong, need in (
             (b <= 0, "an upper level b > 0"),
             (lower >= 0, "a lower level < 0"),
@@ -172,8 +178,8 @@ class _Path:
         ):
             if np.any(wrong):
                 raise SceneError(f"Brownian motion from 0 needs {need}; choose such a one")
-        self.began = T != 0
-        self.T = np.where(T == 0, 1.0, T)
+        self.began = np.finfo(float).tiny <= T  # below, 1 / T overflows
+        self.T = np.where(self.began, T, 1.0)
         near, far = np.minimum(b, -lower), np.maximum(b, -lower)
         reach = tuning.BROWNIAN_SERIES.reach * np.sqrt(self.T)
         self.near, self.far = np.minimum(near, reach), np.minimum(far, reach)

@@ -95,11 +95,7 @@ def corrected_crossing(
 
 
 def _require_order(scene, order):
-    """Refuse an order that does not exist, or not for this scene."""
-    if order not in (1, 2, 3):
-        raise SceneError(
-            f"the corrected formula has the orders 1, 2 and 3, not {order!r}; choose one"
-        )
+    """Refuse an order that does not exist for this scene."""
     known = highest_order(scene)
     if order > known:
         need = "the state (y) and white noise" if known == 1 else "odd g"

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nonsmooth.checks import require_count, require_positive
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.counting import (
     bias_of_counts,
@@ -87,15 +86,11 @@ def sampled_crossing(
     Raises
     ------
     SceneError
-        If a parameter is out of range, or a path diverges.
+        If a path diverges.
     ToleranceError
         If `tol` needs too many steps, or a step is so long that halving it does not measure its
         bias.
     """
-    if step is not None:
-        require_positive("step", step)
-    if paths is not None:
-        require_count("paths", paths)
     request = _Request(
         scene, threshold, horizons, p, seed, threads, tol, step, paths, precision, most
     )

@@ -11,14 +11,23 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from nonsmooth.checks import require_increasing, require_positive
+from nonsmooth.checks import (
+    require_choice,
+    require_count,
+    require_increasing,
+    require_positive,
+    require_seed,
+    require_threads,
+    require_tolerance,
+)
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.paths.sampling import PRECISIONS
+from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
 from nonsmooth.statistics.asymptotic_variance import limit_variance, stationary_mean
 
@@ -100,19 +109,19 @@ def crossing_probability(
     Raises
     ------
     SceneError
-        If a parameter is out of range, the method unknown or without such a parameter, or if the
+        If an argument is out of range, the method unknown or without such a parameter, or if the
         asymptotic formula is asked for a g whose stationary mean is not 0.
     ToleranceError
         If `tol` cannot be met, or a step is so long that halving it does not measure its bias.
     """
+    require_random(scene)
     threshold = bounds(threshold)
-    horizons = np.atleast_1d(np.asarray(horizons, dtype=float))
-    require_increasing("horizons", horizons)
-    require_positive("p", p)
-    if tol is not None:
-        require_positive("tol", tol)
+    horizons = require_increasing("horizons", horizons)
+    p = require_positive("p", p)
+    method = None if method is None else require_choice("method", method, METHODS)
+    seed, threads = require_seed(seed), require_threads(threads)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
-    given = {name: value for name, value in options.items() if value is not None}
+    given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
     attempts = _attempts(scene, horizons, p, given) if method is None else [(method, {})]
     failed = {}
     for name, limits in attempts:
@@ -134,8 +143,6 @@ def crossing_probability(
 
 def _by(method, given):
     """Look up a method, and refuse parameters that it does not have."""
-    if method not in METHODS:
-        raise SceneError(f"unknown method {method!r}; choose {' or '.join(map(repr, METHODS))}")
     for name in given:
         if name not in inspect.signature(METHODS[method]).parameters:
             raise SceneError(f"the method {method!r} has no parameter {name!r}; leave it out")
@@ -202,6 +209,15 @@ def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
     value, error = corrected_crossing(scene, threshold, horizons, p, order, tol, seed, threads)
     return {"probability": value, "probability_error": error}, {}
 
+
+# checks of the parameters that only some methods have
+_OPTIONS: dict[str, Callable] = {
+    "tol": require_tolerance,
+    "step": lambda step: require_positive("step", step),
+    "paths": lambda paths: require_count("paths", paths),
+    "precision": lambda precision: require_choice("precision", precision, PRECISIONS),
+    "order": lambda order: require_count("order", order, 3),
+}
 
 # Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
 # the other parameters of `crossing_probability` that it has. It returns a dict of the variables

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nonsmooth.checks import require_count
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.control_variate import poisson_slope
 from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, new_panel
@@ -25,7 +24,6 @@ _EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
 
 def parallel(work: Callable, jobs: Iterable, threads: int | None = None) -> list:
     """Map `work` over `jobs` on `threads` threads (default: all cores); results in order."""
-    require_count("threads", threads or os.cpu_count())
     with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
         return list(pool.map(work, jobs))
 

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 from nonsmooth.paths.kernels.random_numbers import labelled
 
+PRECISIONS = ("float32", "float64")
+
 
 @dataclass(frozen=True)
 class Sampling:

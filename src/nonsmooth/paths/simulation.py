@@ -6,7 +6,15 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from nonsmooth.checks import require_count, require_increasing, require_positive
+from nonsmooth.checks import (
+    require_choice,
+    require_count,
+    require_increasing,
+    require_positive,
+    require_seed,
+    require_threads,
+    require_tolerance,
+)
 from nonsmooth.errors import SceneError
 from nonsmooth.paths import tuning
 from nonsmooth.paths.ensembles import gram, paths_at
@@ -19,9 +27,9 @@ from nonsmooth.paths.resolution import (
     require_possible,
     require_resolved,
 )
-from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.sampling import PRECISIONS, Sampling
 from nonsmooth.paths.schemes import registry
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.scene import Scene, require_random
 
 
 def simulate(
@@ -78,24 +86,23 @@ def simulate(
     Raises
     ------
     SceneError
-        If a parameter is out of range, or a path diverges.
+        If an argument is out of range, or a path diverges.
     ToleranceError
         If the step is so long that halving it does not measure its bias, or `tol` would take
         more than hours; the message has one that does not.
     """
-    if keep not in ("moments", "paths"):
-        raise SceneError(f"cannot keep {keep!r}; choose 'moments' or 'paths'")
-    if precision not in ("float32", "float64"):
-        raise SceneError(f"unknown precision {precision!r}; choose 'float32' or 'float64'")
+    require_random(scene)
     at = _output_times(horizon, times)
-    require_positive("tol", tol)
+    tol = require_tolerance(tol)
+    step = None if step is None else require_positive("step", step)
+    count = paths_of_variance(tol) if paths is None else require_count("paths", paths)
+    seed, threads = require_seed(seed), require_threads(threads)
+    keep = require_choice("keep", keep, ("moments", "paths"))
+    precision = require_choice("precision", precision, PRECISIONS)
     registry.scheme(scene, scheme)  # raises an error if it cannot simulate the scene
-    count = paths_of_variance(tol) if paths is None else paths
-    require_count("paths", count)
     if step is None:
         share = (1 - tuning.MONTE_CARLO.spread_share) * tol
         step = choose_step(scene, at[-1:], share, seed, threads, scheme)
-    require_positive("step", step)
     if paths is None:
         require_possible(count, at[-1] / step, "the variance of int g is sampled", tol)
     sampling = Sampling(step, count, seed, threads=threads, scheme=scheme, precision=precision)
@@ -127,9 +134,10 @@ def _statistics(scene, times, sampling):
 
 
 def _output_times(horizon, times):
-    require_positive("horizon", horizon)
-    times = np.linspace(0, horizon, 201)[1:] if times is None else np.asarray(times, dtype=float)
-    require_increasing("output times", times)
+    horizon = require_positive("horizon", horizon)
+    if times is None:
+        return np.linspace(0, horizon, 201)[1:]
+    times = require_increasing("times", times)
     if times[-1] > horizon:
         raise SceneError(
             f"the last output time, {times[-1]:g}, is beyond horizon = {horizon:g}; choose another"

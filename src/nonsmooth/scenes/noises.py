@@ -10,6 +10,7 @@ from typing import ClassVar, Protocol, runtime_checkable
 import numpy as np
 import sympy
 
+from nonsmooth.checks import require_parameter
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes import tuning
 from nonsmooth.scenes.formulas import parse, vectorised
@@ -54,11 +55,6 @@ class Noise(Protocol):
         """The drift of the noise's own variables: a dict from zeta and eta, or some of them."""
 
 
-def _require_positive(name: str, value: float) -> None:
-    if not 0 < value < np.inf:
-        raise SceneError(f"the noise needs {name} > 0, got {value}; choose a positive number")
-
-
 def langevin_drift(potential: sympy.Expr) -> dict[sympy.Symbol, sympy.Expr]:
     """Return {eta: drift} of eq. (1) of the paper for a potential v(eta)."""
     return {eta: -sympy.diff(potential, eta)}
@@ -89,8 +85,7 @@ class White:
     forcing: ClassVar[sympy.Expr] = sympy.Integer(0)
 
     def __post_init__(self) -> None:
-        _require_positive("sigma", self.sigma)
-        object.__setattr__(self, "sigma", float(self.sigma))
+        object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
 
     @property
     def drift(self) -> dict[sympy.Symbol, sympy.Expr]:
@@ -124,7 +119,7 @@ class Langevin:
     forcing: ClassVar[sympy.Expr] = eta
 
     def __post_init__(self) -> None:
-        _require_positive("sigma", self.sigma)
+        object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
         far = np.array(tuning.FAR_OUT.distances)
         ends = np.concatenate([-far, far])
         with np.errstate(all="ignore"):
@@ -177,7 +172,7 @@ class Hamiltonian:
     forcing: ClassVar[sympy.Expr] = eta
 
     def __post_init__(self) -> None:
-        _require_positive("sigma", self.sigma)
+        object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
         angle = np.linspace(0, 2 * np.pi, tuning.FAR_OUT.directions, endpoint=False)
         far = tuning.FAR_OUT.distances
         ends = np.outer(far, np.cos(angle)), np.outer(far, np.sin(angle))
@@ -219,8 +214,8 @@ def OrnsteinUhlenbeck(theta: float = 1.0, sigma: float = 1.0) -> Langevin:
     theta, sigma : float
         Relaxation rate and intensity, "1".
     """
-    _require_positive("theta", theta)
-    return Langevin(potential=f"{float(theta)!r}*eta**2/2", sigma=sigma)
+    rate = require_parameter("theta", theta)
+    return Langevin(potential=f"{rate!r}*eta**2/2", sigma=sigma)
 
 
 def KanaiTajimi(stiffness: float = 1.0, damping: float = 1.0, sigma: float = 1.0) -> Hamiltonian:
@@ -231,11 +226,9 @@ def KanaiTajimi(stiffness: float = 1.0, damping: float = 1.0, sigma: float = 1.0
     stiffness, damping, sigma : float
         k and gamma_0 of the ground's linear oscillator, and the intensity, "1".
     """
-    _require_positive("stiffness", stiffness)
-    _require_positive("damping", damping)
-    return Hamiltonian(
-        H=f"{float(stiffness)!r}*eta**2/2 + zeta**2/2", F=f"{float(damping)!r}", sigma=sigma
-    )
+    k = require_parameter("stiffness of the noise", stiffness)
+    gamma = require_parameter("damping of the noise", damping)
+    return Hamiltonian(H=f"{k!r}*eta**2/2 + zeta**2/2", F=f"{gamma!r}", sigma=sigma)
 
 
 NOISES: dict[str, Noise] = {

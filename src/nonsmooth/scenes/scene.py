@@ -1,9 +1,9 @@
 """A scene: mechanical model + noise + potential + damping + penalization + observable."""
 
-import difflib
 import itertools
 import math
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import sympy
 
-from nonsmooth.errors import AssumptionWarning, SceneError
+from nonsmooth.checks import as_number, require_choice, require_number, require_parameter
+from nonsmooth.errors import AssumptionWarning, SceneError, quoted
 from nonsmooth.scenes import noises, symbols, tuning
 from nonsmooth.scenes.formulas import parse, vectorised
 from nonsmooth.scenes.models.model import Model
@@ -69,6 +70,11 @@ class Scene:
         self._check_model_and_noise()
         self._check_numbers()
         self._check_start()
+        for name in ("potential", "observable"):
+            if not isinstance(getattr(self, name), str):
+                raise SceneError(
+                    f"{name} is {quoted(getattr(self, name))}; give a formula as a text"
+                )
         unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
         if unknown:
             raise SceneError(
@@ -82,41 +88,29 @@ class Scene:
             if MODELS.get(self.model.name) == self.model:
                 self._set("model", self.model.name)
         else:
-            _require_known("model", self.model, MODELS)
+            self._set("model", require_choice("model", self.model, MODELS))
         if isinstance(self.noise, str):
-            _require_known("noise", self.noise, noises.NOISES)
-            self._set("noise", noises.NOISES[self.noise])
+            self._set("noise", noises.NOISES[require_choice("noise", self.noise, noises.NOISES)])
         if not isinstance(self.noise, noises.Noise) or isinstance(self.noise, type):
             raise SceneError(
-                f"a scene needs noise, got {self.noise!r}; choose from {', '.join(noises.NOISES)} "
-                "or a noise object"
+                f"noise is {quoted(self.noise)}; choose from {', '.join(noises.NOISES)}, or give a "
+                "noise object"
             )
 
     def _check_numbers(self):
-        for name in ("n", "damping"):
-            try:
-                value = float(getattr(self, name))
-            except (TypeError, ValueError):
-                raise SceneError(
-                    f"a scene needs a number for {name}, got {getattr(self, name)!r}; choose one"
-                ) from None
-            if not value > 0:
-                raise SceneError(f"a scene needs {name} > 0, got {value}; choose a positive number")
-            self._set(name, value)
-        if math.isinf(self.damping):
-            raise SceneError("a scene needs a finite damping; choose a positive number")
+        rigid = as_number(self.n) == math.inf
+        self._set("n", math.inf if rigid else require_parameter("n", self.n))
+        self._set("damping", require_parameter("damping", self.damping))
 
     def _check_start(self):
-        try:
-            start = {name: float(value) for name, value in sorted(self.start.items())}
-        except (AttributeError, TypeError, ValueError):
-            raise SceneError(
-                f"start = {self.start!r} is not a dict of numbers; write for example {{'y': 1.0}}"
-            ) from None
-        if not all(map(math.isfinite, start.values())):
-            raise SceneError(f"start = {start} is not finite; choose finite numbers")
-        for name in start:
-            _require_known("start variable", name, [s.name for s in self.variables])
+        if not isinstance(self.start, Mapping):
+            raise SceneError(f"start is {quoted(self.start)}; give a dict such as {{'y': 1.0}}")
+        for name in self.start:
+            require_choice("a variable of start", name, [s.name for s in self.variables])
+        start = {
+            name: require_number(f"start[{name!r}]", self.start[name])
+            for name in sorted(self.start)
+        }
         wall = self.mechanics.wall
         if math.isinf(self.n) and abs(start.get("x", 0.0)) > wall:
             raise SceneError(
@@ -345,8 +339,16 @@ def by_formulas(parameters: dict) -> Scene:
     return Scene(**parameters | {"noise": noise})
 
 
-def _require_known(what, name, known):
-    if name not in known:
-        near = difflib.get_close_matches(str(name), [str(k) for k in known], n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(known)}"
-        raise SceneError(f"unknown {what} {name!r}; {hint}")
+def require_scene(value: object) -> None:
+    """Refuse, as the first argument of a public function, what is no scene."""
+    if not isinstance(value, Scene):
+        raise SceneError(f"scene is {quoted(value)}; make one by nonsmooth.Scene(...)")
+
+
+def require_random(scene: object) -> None:
+    """Refuse what is no scene, and a scene whose g is constant, so that it has no state."""
+    require_scene(scene)
+    if isinstance(scene, Scene) and not scene.state:
+        raise SceneError(
+            f"g = {quoted(scene.observable)} is constant; choose an observable with variables"
+        )

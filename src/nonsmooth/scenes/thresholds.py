@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nonsmooth.errors import SceneError
+from nonsmooth.checks import require_numbers
+from nonsmooth.errors import SceneError, quoted
 
 
 def bounds(threshold: ArrayLike) -> tuple[float, float]:
@@ -24,20 +25,17 @@ def bounds(threshold: ArrayLike) -> tuple[float, float]:
     SceneError
         If it is neither, or 0 is not between the levels, or no path can cross it.
     """
-    try:
-        levels = np.asarray(threshold, dtype=float)
-    except (TypeError, ValueError):
-        levels = np.empty(0)
+    levels = require_numbers("threshold", threshold)
     if levels.shape not in ((), (2,)):
         raise SceneError(
-            f"a threshold is a number or a pair (lower, upper), got {threshold!r}; choose one"
+            f"threshold is {quoted(threshold)}; give a number or a pair (lower, upper)"
         )
     lower, upper = (-levels, levels) if levels.shape == () else levels
     if not lower < 0 < upper:
         raise SceneError(
-            f"a crossing needs threshold > 0, or lower < 0 < upper, got {threshold!r}; "
+            f"a crossing needs threshold > 0, or lower < 0 < upper, got {quoted(threshold)}; "
             "choose levels on both sides of the start, 0"
         )
     if lower == -np.inf and upper == np.inf:
-        raise SceneError(f"no path crosses threshold = {threshold!r}; choose a finite level")
+        raise SceneError(f"no path crosses threshold = {quoted(threshold)}; choose a finite level")
     return float(lower), float(upper)

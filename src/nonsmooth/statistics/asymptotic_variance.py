@@ -5,15 +5,18 @@ The method is chosen by the scene and the tolerance.
 
 import time
 
+from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.line import quadrature
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes import symbols
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.scene import Scene, require_scene
 from nonsmooth.statistics import gamma2_on_grids, tuning
 from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2, sampled_mean
+
+METHODS = ("deterministic", "monte_carlo")
 
 
 def asymptotic_variance(
@@ -49,15 +52,16 @@ def asymptotic_variance(
     Raises
     ------
     SceneError
-        If there is no such method, or g is a function of the noise alone.
+        If an argument is out of range, there is no such method, or g is a function of the noise
+        alone.
     ToleranceError
         If `tol` cannot be met; the message has the best value and its error.
     """
     began = time.perf_counter()
-    if method not in (None, "deterministic", "monte_carlo"):
-        raise SceneError(
-            f"gamma^2 has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
-        )
+    require_scene(scene)
+    tol = None if tol is None else require_tolerance(tol)
+    method = None if method is None else require_choice("method", method, METHODS)
+    seed, threads = require_seed(seed), require_threads(threads)
     if not scene.state:
         return Estimate(0.0, 0.0, "g is constant", time.perf_counter() - began)
     failed = []

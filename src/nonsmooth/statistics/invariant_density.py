@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 from scipy.integrate import quad
 from scipy.ndimage import maximum_filter1d
 
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.checks import require_list, require_tolerance
+from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.estimate import not_negative
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.mesh.box import half_widths
@@ -25,7 +26,7 @@ from nonsmooth.line import quadrature
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 from nonsmooth.statistics import tuning
 
@@ -43,8 +44,8 @@ def invariant_density(
         Error allowed, relative to the largest value of each density. Unless given, it is 1e-8,
         1e-6, 1e-2 or 5e-2 for one to four variables.
     points : dict, optional
-        Maps names of variables to points at which the densities are wanted; 201 equidistant ones
-        over the support unless given.
+        Maps the names of all variables of the state to points at which the densities are wanted;
+        201 equidistant ones over the support unless given.
 
     Returns
     -------
@@ -58,11 +59,14 @@ def invariant_density(
     Raises
     ------
     SceneError
-        If n is infinite.
+        If an argument is out of range, or n is infinite.
     ToleranceError
         If `tol` cannot be met; the message has the error reached.
     """
+    require_random(scene)
     _require_finite(scene)
+    tol = None if tol is None else require_tolerance(tol)
+    points = None if points is None else _require_points(scene, points)
     tol = tuning.INVARIANT_DENSITY.tol[scene.dimension] if tol is None else tol
     if closed := closed_form(scene):
         if points is None:
@@ -83,6 +87,16 @@ def invariant_density(
         {key: np.max(error) for key, (_, error) in clipped.items()},
         points,
     )
+
+
+def _require_points(scene, points):
+    """Return the points of every variable of the state as arrays."""
+    if not isinstance(points, Mapping) or set(points) != set(scene.state):
+        example = ", ".join(f"'{name}': [0.0, 0.5]" for name in scene.state)
+        raise SceneError(
+            f"points is {quoted(points)}; give those of every variable of the state, {{{example}}}"
+        )
+    return {name: require_list(f"points[{name!r}]", points[name]) for name in scene.state}
 
 
 def _equidistant(ends):

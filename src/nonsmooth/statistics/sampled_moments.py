@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from nonsmooth.checks import require_increasing, require_positive
+from nonsmooth.checks import require_increasing
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.resolution import first_step, paths_for, refined_step, require_possible
@@ -49,12 +49,11 @@ def sampled_moments(
     Raises
     ------
     SceneError
-        If the times or the tolerance are out of range.
+        If the times do not increase from above 0.
     ToleranceError
         If `tol` cannot be met; the message has the best value and its error.
     """
-    require_increasing("times of the variance", times)
-    require_positive("tol", tol)
+    times = require_increasing("times", times)
     paths, step = MONTE_CARLO.pilot_paths, first_step(scene, times)
     order = registry.scheme(scene).weak_order(scene)
     for attempt in range(MONTE_CARLO.attempts):

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse.linalg as spla
 
+from nonsmooth.checks import require_tolerance
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import tensor_grid
@@ -18,7 +19,7 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.line import eigenfunctions
 from nonsmooth.refine import until_agreement
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.statistics import tuning
 
 
@@ -43,11 +44,14 @@ def spectral_gap(scene: Scene, tol: float = 1e-6) -> Estimate:
     Raises
     ------
     SceneError
-        If the state has more variables, or n is infinite and the state two variables.
+        If an argument is out of range, the state has more variables, or n is infinite and the state
+        two variables.
     ToleranceError
         If `tol` cannot be met; the message has the best value and its error.
     """
     began = time.perf_counter()
+    require_random(scene)
+    tol = require_tolerance(tol)
     if scene.is_line:
         levels, solve, box = _with_one_variable(scene)
     elif scene.dimension == 2 and not math.isinf(scene.n):

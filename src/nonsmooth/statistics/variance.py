@@ -7,13 +7,21 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from nonsmooth.checks import (
+    require_choice,
+    require_list,
+    require_seed,
+    require_threads,
+    require_tolerance,
+)
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.estimate import not_negative
 from nonsmooth.line import eigenfunctions
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.refine import until_agreement
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.scene import Scene, require_scene
 from nonsmooth.statistics import moments_on_grids, tuning
+from nonsmooth.statistics.asymptotic_variance import METHODS
 from nonsmooth.statistics.sampled_moments import require_accuracy, sampled_moments
 
 
@@ -56,17 +64,18 @@ def variance(
     Raises
     ------
     SceneError
-        If the scene has no deterministic solver and that is asked for, or a time is out of range.
+        If an argument is out of range, or a deterministic solver is asked for and the scene has
+        none.
     ToleranceError
         If `tol` cannot be met; the message has the best value and its error.
     """
-    times = np.atleast_1d(np.asarray(times, dtype=float))
-    if not np.all(times >= 0):
-        raise SceneError("the times of the variance must not be negative; remove those that are")
-    if method not in (None, "deterministic", "monte_carlo"):
-        raise SceneError(
-            f"v(tau) has no method {method!r}; choose 'deterministic' or 'monte_carlo'"
-        )
+    require_scene(scene)
+    times = require_list("times", times)
+    if np.any(times < 0):
+        raise SceneError("times of the variance are negative; remove those that are")
+    tol = None if tol is None else require_tolerance(tol)
+    method = None if method is None else require_choice("method", method, METHODS)
+    seed, threads = require_seed(seed), require_threads(threads)
     if not scene.state:  # g is constant
         return _dataset(
             times, np.zeros((2, len(times))), np.zeros((2, len(times))), "deterministic"

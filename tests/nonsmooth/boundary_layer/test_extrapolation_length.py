@@ -14,5 +14,5 @@ def test_both_sides_of_an_odd_g():
 
 def test_unknown_side():
     """A side that is neither is refused; the message has the choices."""
-    with pytest.raises(ns.NonsmoothError, match="choose 'lower' or 'upper'"):
+    with pytest.raises(ns.NonsmoothError, match="choose from lower, upper"):
         ns.extrapolation_length(FRICTION, side="left")

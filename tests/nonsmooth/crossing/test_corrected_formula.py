@@ -166,7 +166,7 @@ def test_orders_need_constants():
         ns.crossing_probability(
             ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
         )
-    with pytest.raises(ns.NonsmoothError, match="orders 1, 2 and 3"):
+    with pytest.raises(ns.NonsmoothError, match="order is 4; give at most 3"):
         ns.crossing_probability(FRICTION, 0.6, [1.0], method="corrected", order=4)
 
 

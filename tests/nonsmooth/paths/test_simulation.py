@@ -147,7 +147,7 @@ def test_divergence_is_an_error_and_ends(model, n):
 def test_bad_requests_are_refused(arguments):
     """The error is one line naming the parameter."""
     defaults = {"horizon": 3.0, "step": 0.1, "paths": 10, "seed": 1}
-    with pytest.raises(SceneError, match=r"choose|sort"):
+    with pytest.raises(SceneError, match=r"; (give|choose|did you mean)"):
         simulate(FRICTION, **(defaults | arguments))
 
 

@@ -36,10 +36,10 @@ def test_minimal_state(scene, state):
     [
         ({"model": "fricton"}, "did you mean 'friction'"),
         ({"model": "friction", "noise": "whit"}, "did you mean 'white'"),
-        ({"model": "friction", "n": 0}, "n > 0"),
-        ({"model": "friction", "n": float("nan")}, "n > 0"),
-        ({"model": "friction", "damping": -1}, "damping > 0"),
-        ({"model": "friction", "damping": float("inf")}, "finite damping"),
+        ({"model": "friction", "n": 0}, "n is 0; give a positive"),
+        ({"model": "friction", "n": float("nan")}, "n is nan"),
+        ({"model": "friction", "damping": -1}, "damping is -1"),
+        ({"model": "friction", "damping": float("inf")}, "damping is inf"),
         ({"model": "friction", "observable": "eta"}, "eta"),
         ({"model": "friction", "potential": "y"}, "'y'"),
         ({"model": "friction", "start": {"z": 1}}, "'z'"),
@@ -59,11 +59,11 @@ def test_impossible_scenes_are_refused(scene, offender):
     [
         (lambda: ns.Langevin("-eta**2/2"), "not confining"),
         (lambda: ns.Langevin("abs(eta)"), "not confining"),
-        (lambda: ns.Langevin("eta**4/4", sigma=0), "sigma > 0"),
-        (lambda: ns.OrnsteinUhlenbeck(theta=-1), "theta > 0"),
+        (lambda: ns.Langevin("eta**4/4", sigma=0), "sigma is 0"),
+        (lambda: ns.OrnsteinUhlenbeck(theta=-1), "theta is -1"),
         (lambda: ns.Hamiltonian("eta**2/2 - zeta**2/2", "1"), "does not confine"),
         (lambda: ns.Hamiltonian("eta**2/2 + zeta**2/2", "-1"), "not positive"),
-        (lambda: ns.KanaiTajimi(stiffness=0), "stiffness > 0"),
+        (lambda: ns.KanaiTajimi(stiffness=0), "stiffness of the noise is 0"),
     ],
 )
 def test_impossible_noises_are_refused(noise, offender):
@@ -123,7 +123,7 @@ def test_what_is_warned_of_is_said_once():
         stiffer, moved = scene.with_n(50), scene.with_start({"y": 1})
     assert (stiffer.n, stiffer.identity) == (50.0, scene.identity)
     assert (moved.n, moved.start) == (5.0, {"y": 1.0})
-    with pytest.raises(SceneError, match="n > 0"):
+    with pytest.raises(SceneError, match="n is -1"):
         scene.with_n(-1)
 
 

@@ -28,14 +28,14 @@ def test_numbers_and_pairs(threshold, levels):
     [
         (0.0, "threshold > 0"),
         (-1.0, "threshold > 0"),
-        (float("nan"), "threshold > 0"),
+        (float("nan"), "threshold is nan"),
         ((0.0, 1.0), "lower < 0 < upper"),
         ((1.0, -1.0), "lower < 0 < upper"),
-        ((-1.0, float("nan")), "lower < 0 < upper"),
+        ((-1.0, float("nan")), "not a number"),
         (float("inf"), "finite level"),
         ((-np.inf, np.inf), "finite level"),
         ((-1.0, 0.5, 1.0), "a number or a pair"),
-        ("high", "a number or a pair"),
+        ("high", "give numbers"),
         (None, "threshold"),
     ],
 )

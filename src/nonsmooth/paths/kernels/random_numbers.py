@@ -14,7 +14,6 @@ import math
 
 import numpy as np
 
-from nonsmooth.errors import SceneError
 from nonsmooth.paths.kernels import vector_math
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.vector_math import fma, like
@@ -38,15 +37,8 @@ def generator_words(scene: Scene, seed: int | tuple, block: int) -> np.ndarray:
     Returns
     -------
     numpy.ndarray of uint32, shape (4, BLOCK)
-
-    Raises
-    ------
-    SceneError
-        If the seed is not a non-negative integer.
     """
     entropy, *labels = seed if isinstance(seed, tuple) else (seed,)
-    if not (isinstance(entropy, int | np.integer) and entropy >= 0):
-        raise SceneError(f"a seed is a non-negative integer, got {entropy!r}; choose one")
     identity = repr((scene.identity, labels)).encode()
     key = int.from_bytes(hashlib.sha256(identity).digest()[:8], "big")
     sequence = np.random.SeedSequence(int(entropy), spawn_key=(key, block))

@@ -3,6 +3,7 @@
 from functools import lru_cache
 from typing import Any
 
+from nonsmooth.checks import require_choice
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.control_variate import PoissonSlope
 from nonsmooth.paths.schemes.drift_implicit import DRIFT_IMPLICIT
@@ -29,9 +30,7 @@ def scheme(scene: Scene, name: str = "strang") -> Scheme:
     SceneError
         If there is no such scheme or it cannot simulate the scene.
     """
-    if name not in SCHEMES:
-        raise SceneError(f"unknown scheme {name!r}; choose from {', '.join(SCHEMES)}")
-    chosen = SCHEMES[name]
+    chosen = SCHEMES[require_choice("scheme", name, SCHEMES)]
     if chosen is STRANG and not STRANG.handles(scene):
         chosen = EULER_MARUYAMA
     if not chosen.handles(scene):

@@ -6,7 +6,6 @@ import pytest
 from scipy import stats
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError
 from nonsmooth.paths.kernels import random_numbers
 from nonsmooth.paths.kernels.random_numbers import BLOCK, blocks, generator_words, normals
 from references import FALSE_ALARM, FRICTION
@@ -121,6 +120,3 @@ def test_blocks():
     assert blocks(BLOCK, BLOCK + 5) == [(1, BLOCK), (2, 5)]
     with pytest.raises(ValueError, match="multiple"):
         blocks(17, 100)
-    for seed in (-1, 0.5, "a"):
-        with pytest.raises(SceneError, match="non-negative integer"):
-            generator_words(FRICTION, seed, 0)
