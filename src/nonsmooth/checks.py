@@ -26,8 +26,10 @@ MOST_THREADS = 1024  # more than any machine has cores; each takes memory of the
 # reaches from 1e-308 to 1e308.
 SMALLEST, LARGEST = 1e-75, 1e75
 # In units in which the mass, the slip force and the yield limit are 1, parameters of a scene are
-# seldom far from 1. Beyond these limits rounding loses one part of the equations of motion.
-PARAMETERS = 1e-15, 1e15
+# seldom far from 1. Beyond these limits the square of a part of the equations is lost in rounding.
+PARAMETERS = 1e-9, 1e9
+# the limits n -> 0 and n -> inf, up to rounding
+PENALIZATIONS = 1e-15, 1e15
 
 
 def _refuse(name: str, value: object, cure: str) -> NoReturn:
@@ -48,11 +50,13 @@ def as_number(value: Any) -> float | None:
         return None
 
 
-def require_number(name: str, value: Any) -> float:
-    """Return a number that is finite, as a float."""
+def require_number(name: str, value: Any, most: float = LARGEST) -> float:
+    """Return a number of at most a certain size, as a float."""
     number = as_number(value)
     if number is None or not math.isfinite(number):
         _refuse(name, value, "give a finite number")
+    if abs(number) > most:
+        _refuse(name, value, f"give a number from {-most:g} to {most:g}")
     return number
 
 
@@ -146,8 +150,9 @@ def require_list(name: str, values: Any) -> np.ndarray:
     found = require_numbers(name, values)
     if found.ndim > 1 or found.size == 0:
         _refuse(name, values, "give one number or a list of them")
-    if not np.all(np.isfinite(found)):
-        _refuse(name, values, "give finite numbers")
+    size = np.abs(found)
+    if not np.all((size == 0) | ((size >= SMALLEST) & (size <= LARGEST))):
+        _refuse(name, values, f"give finite numbers, of sizes from {SMALLEST:g} to {LARGEST:g}")
     return np.atleast_1d(found)
 
 

@@ -4,6 +4,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from scipy.sparse.linalg import ArpackError
+
+from nonsmooth.errors import ToleranceError
+
 
 @dataclass(frozen=True)
 class Refined:
@@ -56,10 +61,21 @@ def until_agreement(
     Returns
     -------
     Refined
+
+    Raises
+    ------
+    ToleranceError
+        If the equations of a level are singular in double precision.
     """
     solutions, estimate = [], None
     for level in levels:
-        solutions.append(solve(level))
+        try:
+            solutions.append(solve(level))
+        except (np.linalg.LinAlgError, ArpackError) as error_of_library:
+            raise ToleranceError(
+                f"the equations are singular in double precision ({error_of_library}); give "
+                "parameters of more similar sizes or use Monte Carlo"
+            ) from None
         if len(solutions) < 2:
             continue
         estimate = error(solutions)

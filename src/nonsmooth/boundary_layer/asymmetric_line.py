@@ -12,7 +12,7 @@ import scipy.linalg
 
 from nonsmooth.boundary_layer import tuning
 from nonsmooth.boundary_layer.constants import LayerConstants
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
 from nonsmooth.line import quadrature
@@ -133,8 +133,8 @@ def _on_degree(scene: Scene, degree: int, mean: float) -> LayerConstants:
     spread = np.sqrt(grid.masses @ grid.g**2)
     if abs(mean) > tuning.LINE.centred * spread:
         raise SceneError(
-            f"the extrapolation length needs E g = 0, but g = {scene.observable!r} has the mean "
-            f"{mean:.10g}; subtract it from g"
+            f"the extrapolation length needs E g = 0, but g = {quoted(scene.observable)} has "
+            f"the mean {mean:.10g}; subtract it from g"
         )
     # subtract what the quadrature leaves of the mean
     g = grid.g - np.where(grid.g == 0, 0.0, grid.masses @ grid.g)

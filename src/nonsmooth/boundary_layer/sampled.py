@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from nonsmooth.boundary_layer import tuning
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.estimate import Estimate
 from nonsmooth.paths.ensembles import over_blocks, parallel, require_finite
 from nonsmooth.paths.kernels.compilation import kernel
@@ -81,8 +81,8 @@ def sampled_kappa(
     began = time.perf_counter()
     if not scene.is_odd():
         raise SceneError(
-            f"the extrapolation length is sampled for odd g, not for g = {scene.observable!r} with "
-            f"the state ({', '.join(scene.state)}); choose such a g"
+            f"the extrapolation length is sampled for odd g, not for g = "
+            f"{quoted(scene.observable)} with the state ({', '.join(scene.state)}); choose such a g"
         )
     lag, paths = tuning.SAMPLED.lag * max(1.0, 1 / scene.damping), tuning.SAMPLED.paths
     for attempt in range(tuning.SAMPLED.attempts):

@@ -11,7 +11,7 @@ import scipy.linalg
 
 from nonsmooth.boundary_layer import tuning
 from nonsmooth.boundary_layer.constants import LayerConstants
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
 from nonsmooth.refine import until_agreement
@@ -52,7 +52,7 @@ def layer_constants(
         raise SceneError(
             f"the constants of second order are computed for the state (y), white noise and odd g, "
             f"not for ({', '.join(scene.state)}) with {scene.noise.title} and g = "
-            f"{scene.observable!r}; choose such a scene"
+            f"{quoted(scene.observable)}; choose such a scene"
         )
     tol = tuning.LINE.accuracy if tol is None else tol
 

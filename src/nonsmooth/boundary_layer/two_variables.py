@@ -12,7 +12,7 @@ import scipy.linalg
 
 from nonsmooth.boundary_layer import tuning
 from nonsmooth.boundary_layer.constants import LayerConstants
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import direct_solver, fitted
@@ -138,7 +138,7 @@ def _milne(scene: Scene, grid) -> np.ndarray | None:
     scatter = math.sqrt(abs((measure @ everywhere**2) * (measure @ whole**2)))
     if diffusion < tuning.TWO_VARIABLES.standstill * scatter:
         raise SceneError(
-            f"gamma^2 of g = {scene.observable!r} is 0 in this scene, so that there is no "
+            f"gamma^2 of g = {quoted(scene.observable)} is 0 in this scene, so that there is no "
             "extrapolation length; choose another observable, or method='monte_carlo'"
         )
     border = np.block(

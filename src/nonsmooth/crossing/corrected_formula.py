@@ -29,7 +29,7 @@ from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.boundary_layer.milne import highest_order, layer_constants
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.expansion import Expansion
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.scenes.scene import Scene
 
 
@@ -101,7 +101,7 @@ def _require_order(scene, order):
         need = "the state (y) and white noise" if known == 1 else "odd g"
         raise SceneError(
             f"the corrected formula of order {order} needs {need}, not ({', '.join(scene.state)}) "
-            f"with {scene.noise.title} and g = {scene.observable!r}; use order={known} or "
+            f"with {scene.noise.title} and g = {quoted(scene.observable)}; use order={known} or "
             "method='monte_carlo'"
         )
 

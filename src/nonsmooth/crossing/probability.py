@@ -25,7 +25,7 @@ from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.paths.sampling import PRECISIONS
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
@@ -193,8 +193,8 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
         centred.relative * np.sqrt(gamma2.value), centred.uncertainties * uncertainty
     ):
         raise SceneError(
-            f"the asymptotic formula needs E g = 0, but g = {scene.observable!r} has the mean "
-            f"{mean:.10g}; subtract it from g"
+            f"the asymptotic formula needs E g = 0, but g = {quoted(scene.observable)} has "
+            f"the mean {mean:.10g}; subtract it from g"
         )
     value, error = asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error)
     return {"probability": value, "probability_error": error}, {}

@@ -16,6 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.polynomial import legendre
 
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.grids.elements import lagrange, lobatto
 from nonsmooth.grids.grading import mirrored
 from nonsmooth.grids.solver import EVEN, ODD
@@ -130,7 +131,13 @@ def _elements(scene, edges, degree, scale):
     energy = scene.potential_expression + scene.mechanics.added_potential
     energy = vectorised(energy.subs(penalization, scene.n), (x,))
     force = -vectorised(scene.numerical_drift()[y].subs(y, 0), (x,))(rough[0])
-    masses = [w * np.exp((energy(0.0) - energy(at)) / scale**2) for at, w in (smooth, rough)]
+    with np.errstate(over="ignore"):
+        masses = [w * np.exp((energy(0.0) - energy(at)) / scale**2) for at, w in (smooth, rough)]
+    if not all(np.all(np.isfinite(mass)) for mass in masses):
+        raise SceneError(
+            f"U = {quoted(scene.potential)} falls so far below U(0) that the invariant density "
+            "overflows in double precision; choose a U that falls less, or method='monte_carlo'"
+        )
     up = scale * slope
     down = up - (force / scale)[:, None] * value
 

@@ -61,9 +61,16 @@ def friction_variance(n: float, damping: float = 1.0) -> tuple[float, float]:
             return slope(y) ** 2 * density(y)
 
         for row, integrand in enumerate((spread, density)):
+            # with its full output it does not warn of an error that is returned anyway
             moments[row] += scipy.integrate.quad(
-                integrand, left, right, epsabs=0, epsrel=settings.tolerance, limit=200
-            )
+                integrand,
+                left,
+                right,
+                epsabs=0,
+                epsrel=settings.tolerance,
+                limit=200,
+                full_output=True,
+            )[:2]
     (square, square_error), (mass, mass_error) = moments
     value = square / mass
     return value, value * (

@@ -69,7 +69,8 @@ def spectrum(scene: Scene, degree: int) -> Spectrum:
         nu, vectors = scipy.linalg.eigh(mass * balance, shifted * balance)
     except (ValueError, np.linalg.LinAlgError):
         raise ToleranceError(
-            f"the generator of {scene} overflows in double precision; choose C_b and n closer to 1"
+            f"the generator with C_b = {scene.damping:g}, n = {scene.n:g} and sigma = "
+            f"{scene.noise.sigma:g} overflows in double precision; choose them closer to 1"
         ) from None
     keep = nu > tuning.SPECTRAL_ELEMENTS.least_nu
     nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * scale[:, None]

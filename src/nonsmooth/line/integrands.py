@@ -7,7 +7,7 @@ import numpy as np
 import sympy
 from scipy.optimize import brentq
 
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.grids.grading import distinct
 from nonsmooth.line import tuning
 from nonsmooth.line.gauss_elements import NODES, GaussElements
@@ -123,7 +123,7 @@ def finite_observable(scene: Scene, g: Callable, y: np.ndarray) -> np.ndarray:
     if not np.all(np.isfinite(value)):
         place = np.asarray(y)[~np.isfinite(value)][0]
         raise SceneError(
-            f"g = {scene.observable!r} is not finite at y = {place:g}; "
+            f"g = {quoted(scene.observable)} is not finite at y = {place:g}; "
             "choose one that is, or write it so that it does not overflow"
         )
     return value

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.estimate import require
 from nonsmooth.line import tuning
 from nonsmooth.line.integrands import Integrands
@@ -150,8 +150,8 @@ def solved(scene: Scene) -> Solution:
     fine = integrate(integrands.halved(elements, np.full(len(elements.left), True)), sigma)
     if not fine.tail <= _EPS * fine.gamma2:
         raise SceneError(
-            f"g = {scene.observable!r} is not square-integrable, so that gamma^2 may be infinite; "
-            "choose one that grows less"
+            f"g = {quoted(scene.observable)} is not square-integrable, so that gamma^2 may be "
+            "infinite; choose one that grows less"
         )
     formula = formula_error(integrands.varying, fine)
     mass = fine.elements.mass / fine.total

@@ -12,6 +12,7 @@ Nothing is solved in this package.
   contract `Noise`
 - `penalties.Penalty`: the Moreau-Yosida regularisations, `ABSOLUTE_VALUE` and `BARRIER`
 - `formulas.parse`, `formulas.vectorised`: text to sympy, sympy to numpy, without `eval`
+- `magnitudes.require_moderate`: formulas of a size that double precision can compute with
 - `symbols`: the variables zeta, eta, y, x and the damping C_b
 - `thresholds.bounds`: the two levels of a threshold
 - `equations`: Table 2 of the paper with undefined functions for potentials and penalties

@@ -252,6 +252,9 @@ def vectorised(
 
     def evaluate(*values):
         shape = np.broadcast_shapes(*(np.shape(value) for value in values))
-        return np.broadcast_to(np.asarray(function(*values), dtype=float), shape)
+        # a Python float would raise exceptions where numpy's has the value inf
+        values = [np.float64(v) if isinstance(v, float) else v for v in values]
+        with np.errstate(all="ignore"):  # what is not finite is refused where it matters
+            return np.broadcast_to(np.asarray(function(*values), dtype=float), shape)
 
     return evaluate

@@ -11,9 +11,10 @@ import numpy as np
 import sympy
 
 from nonsmooth.checks import require_parameter
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.scenes import tuning
 from nonsmooth.scenes.formulas import parse, vectorised
+from nonsmooth.scenes.magnitudes import require_moderate
 from nonsmooth.scenes.symbols import eta, y, zeta
 
 
@@ -120,13 +121,14 @@ class Langevin:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
+        require_moderate("v", self.potential, self.potential_expression, (eta,))
         far = np.array(tuning.FAR_OUT.distances)
         ends = np.concatenate([-far, far])
         with np.errstate(all="ignore"):
             restoring = -vectorised(self.drift[eta], (eta,))(ends) / ends
         if not (np.all(restoring > 0) and restoring[-1] > tuning.FAR_OUT.kept * restoring[-4]):
             raise SceneError(
-                f"the noise potential v = {self.potential!r} is not confining; "
+                f"the noise potential v = {quoted(self.potential)} is not confining; "
                 "v'(eta)*eta must grow at least like eta**2, for example v = 'eta**2/2'"
             )
 
@@ -173,6 +175,8 @@ class Hamiltonian:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
+        require_moderate("H", self.H, self.energy, (eta, zeta))
+        require_moderate("F", self.F, self.dissipation, (eta, zeta))
         angle = np.linspace(0, 2 * np.pi, tuning.FAR_OUT.directions, endpoint=False)
         far = tuning.FAR_OUT.distances
         ends = np.outer(far, np.cos(angle)), np.outer(far, np.sin(angle))
@@ -181,12 +185,12 @@ class Hamiltonian:
             dissipation = vectorised(self.dissipation, (eta, zeta))(*ends)
         if not np.all(np.diff(energy, axis=0) > 0):
             raise SceneError(
-                f"the Hamiltonian H = {self.H!r} does not confine (eta, zeta); "
+                f"the Hamiltonian H = {quoted(self.H)} does not confine (eta, zeta); "
                 "it must grow in every direction, for example H = 'eta**2/2 + zeta**2/2'"
             )
         if not np.all(dissipation > 0):
             raise SceneError(
-                f"the dissipation F = {self.F!r} is not positive at infinity; "
+                f"the dissipation F = {quoted(self.F)} is not positive at infinity; "
                 "use a positive function, for example F = '1'"
             )
 

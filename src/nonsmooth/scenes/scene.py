@@ -11,10 +11,19 @@ from typing import Any
 import numpy as np
 import sympy
 
-from nonsmooth.checks import as_number, require_choice, require_number, require_parameter
+from nonsmooth.checks import (
+    PARAMETERS,
+    PENALIZATIONS,
+    as_number,
+    require_choice,
+    require_number,
+    require_parameter,
+    require_positive,
+)
 from nonsmooth.errors import AssumptionWarning, SceneError, quoted
 from nonsmooth.scenes import noises, symbols, tuning
 from nonsmooth.scenes.formulas import parse, vectorised
+from nonsmooth.scenes.magnitudes import require_moderate
 from nonsmooth.scenes.models.model import Model
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.penalties import n as penalization
@@ -75,12 +84,15 @@ class Scene:
                 raise SceneError(
                     f"{name} is {quoted(getattr(self, name))}; give a formula as a text"
                 )
+        require_moderate("U", self.potential, self.potential_expression, (x,))
         unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
         if unknown:
             raise SceneError(
-                f"the observable {self.observable!r} uses {', '.join(map(str, unknown))}, which "
-                f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
+                f"the observable {quoted(self.observable)} uses {', '.join(map(str, unknown))}, "
+                f"which {self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
             )
+        if not self.observes_penalty_force:
+            require_moderate("g", self.observable, self.observable_expression, self.variables)
 
     def _check_model_and_noise(self):
         # a known model is stored by its name, so that scenes made either way are equal
@@ -99,7 +111,7 @@ class Scene:
 
     def _check_numbers(self):
         rigid = as_number(self.n) == math.inf
-        self._set("n", math.inf if rigid else require_parameter("n", self.n))
+        self._set("n", math.inf if rigid else require_positive("n", self.n, *PENALIZATIONS))
         self._set("damping", require_parameter("damping", self.damping))
 
     def _check_start(self):
@@ -108,7 +120,7 @@ class Scene:
         for name in self.start:
             require_choice("a variable of start", name, [s.name for s in self.variables])
         start = {
-            name: require_number(f"start[{name!r}]", self.start[name])
+            name: require_number(f"start[{name!r}]", self.start[name], PARAMETERS[1])
             for name in sorted(self.start)
         }
         wall = self.mechanics.wall
@@ -125,17 +137,20 @@ class Scene:
     def _warn_if_not_confined(self):
         """Warn if U grows less than quadratically, against assumption (HU2) of the paper.
 
-        There is no warning where the penalty is part of the potential U_n, because it confines.
+        Where the penalty is part of the potential, U_n is meant: a penalty confines, too, unless U
+        falls more steeply.
         """
+        if "x" not in self.state or (self.mechanics.in_potential and math.isinf(self.n)):
+            return
+        U = self._with_numbers(self.potential_expression + self.mechanics.added_potential)
         ends = np.outer([-1, 1], tuning.FAR_OUT.distances)
         with np.errstate(all="ignore"):
-            ratio = vectorised(self.potential_expression, (x,))(ends) / ends**2
+            ratio = vectorised(U, (x,))(ends) / ends**2
         kept = ratio[:, -1] > tuning.FAR_OUT.kept * np.abs(ratio[:, 0])
-        confining = np.all(kept) and np.all(ratio > 0)
-        if "x" in self.state and not (confining or self.mechanics.in_potential):
+        if not (np.all(kept) and np.all(ratio > 0)):
             warnings.warn(
-                f"U = {self.potential!r} violates (HU2), U(x) >= c x**2 - C: the paper's theorems "
-                "do not cover this scene; add a confining term such as x**2/2",
+                f"U = {quoted(self.potential)} violates (HU2), U(x) >= c x**2 - C: the paper's "
+                "theorems do not cover this scene; add a confining term such as x**2/2",
                 AssumptionWarning,
                 stacklevel=4,
             )
@@ -144,8 +159,8 @@ class Scene:
         """Warn unless g^2 <= C V_n, which Theorem 6 of the paper asks for."""
         if self.grows_too_fast:
             warnings.warn(
-                f"g = {self.observable!r} violates g**2 <= V, V the Lyapunov function, which grows "
-                "like the energy: the paper's limit theorem does not cover this scene, and int g "
+                f"g = {quoted(self.observable)} violates g**2 <= V, V the Lyapunov function, which "
+                "grows like the energy: the paper's limit theorem does not cover this scene, and int g "
                 "may have no variance; choose a g that stays finite and grows less",
                 AssumptionWarning,
                 stacklevel=4,

@@ -50,6 +50,18 @@ class Formula:
     exponent: int = 100
 
 
+@dataclass(frozen=True)
+class Near:
+    """States at which formulas must be numbers of a moderate size."""
+
+    # chosen: values of each variable, of the size of the yield limit, within which every path is
+    # for some of its time
+    places: tuple[float, ...] = (-1.0, -0.5, -0.1, 0.0, 0.1, 0.5, 1.0)
+    # chosen: the sizes a formula may have there; its square is in single precision then
+    sizes: tuple[float, float] = (1e-15, 1e15)
+
+
 FAR_OUT = FarOut()
 FORMULA = Formula()
+NEAR = Near()
 LINEAR_DRIFT = LinearDrift()

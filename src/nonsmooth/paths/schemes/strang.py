@@ -21,6 +21,7 @@ driven by the same Brownian path.
 """
 
 import math
+import warnings
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -28,6 +29,7 @@ import numpy as np
 import scipy
 import sympy
 
+from nonsmooth.errors import SceneError
 from nonsmooth.paths import tuning
 from nonsmooth.paths.control_variate import DEGREE
 from nonsmooth.paths.kernels import exact_flows
@@ -252,11 +254,19 @@ def gaussian_step(matrix: np.ndarray, sigma: float, step: float) -> tuple[tuple,
         block = np.block([[-matrix, diffusion], [np.zeros((size, size)), matrix.T]])
         covariance = transition @ scipy.linalg.expm(block * step)[:size, size:]
     else:  # over a long step, growing exponentials in the block would cost all digits
-        stationary = scipy.linalg.solve_continuous_lyapunov(matrix, -diffusion)
+        with warnings.catch_warnings():  # the result is examined below
+            warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)
+            stationary = scipy.linalg.solve_continuous_lyapunov(matrix, -diffusion)
         covariance = stationary - transition @ stationary @ transition.T
     padded = np.zeros((2, 2, 2))
     padded[0, :size, :size] = transition - np.eye(size)
-    padded[1, :size, :size] = np.linalg.cholesky((covariance + covariance.T) / 2)
+    try:
+        padded[1, :size, :size] = np.linalg.cholesky((covariance + covariance.T) / 2)
+    except np.linalg.LinAlgError:
+        raise SceneError(
+            f"the covariance of the noise over a step = {step:.1e} is lost in rounding; choose "
+            "another step, or a noise whose parameters are of similar sizes"
+        ) from None
     if size == 1:
         padded[0, 0, 0] = math.expm1(matrix[0, 0] * step)
     lower = padded[1, 0, 0], padded[1, 1, 0], padded[1, 1, 1]
