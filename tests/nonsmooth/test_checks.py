@@ -73,7 +73,7 @@ def test_choices():
     for wrong, cure in (
         ("Strang", "did you mean 'strang'"),
         ("x", "from lie, strang"),
-        (["lie"], ""),
+        (["lie"], "from lie, strang"),
     ):
         with pytest.raises(SceneError, match=cure):
             checks.require_choice("a", wrong, ("lie", "strang"))

@@ -160,8 +160,8 @@ class Scene:
         if self.grows_too_fast:
             warnings.warn(
                 f"g = {quoted(self.observable)} violates g**2 <= V, V the Lyapunov function, which "
-                "grows like the energy: the paper's limit theorem does not cover this scene, and int g "
-                "may have no variance; choose a g that stays finite and grows less",
+                "grows like the energy: the paper's limit theorem does not cover this scene, and "
+                "int g may have no variance; choose a g that stays finite and grows less",
                 AssumptionWarning,
                 stacklevel=4,
             )

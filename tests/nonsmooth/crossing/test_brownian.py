@@ -1,7 +1,5 @@
 """Crossing, survival and first passage of Brownian motion against fifty digits."""
 
-import math
-
 import mpmath
 import numpy as np
 import pytest
@@ -172,12 +170,6 @@ def test_exits_by_either_level_add_up(lower):
     assert np.all(np.diff(above) >= -1e-15)
     if np.isfinite(lower):
         assert above[-1] == pytest.approx(lower / (lower - 1.3), rel=1e-14)
-
-
-def test_what_is_not_a_number_stays_that():
-    """A threshold or a horizon that is not a number gives none."""
-    assert math.isnan(ns.brownian_crossing(1.0, math.nan))
-    assert math.isnan(ns.brownian_crossing(math.nan, 1.0))
 
 
 @pytest.mark.parametrize(("b", "lower"), [(0.5, -0.7), (2.0, -0.1), (0.5, -np.inf)])
