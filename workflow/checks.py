@@ -46,13 +46,14 @@ def check(layers: Layers) -> None:
             _check_scenes(config)
             _check_names(config)
             _check_increasing(config)
+            _check_speed(config)
+            # before what compares sizes with each other, so that a huge one is to blame
+            check_costs(config)
             _check_dry_friction(config)
             _check_times(config)
             if not finite(config["convergence"]["n"]):
                 raise _refused(config, ("convergence", "n"), "needs a finite n; add one")
-            _check_finite_p(config["finite_p"], config["crossing"])
-            _check_speed(config["speed_against_error"])
-            check_costs(config)
+            _check_finite_p(config)
         except ConfigError as error:
             raise layers.named(error) from None
 
@@ -62,11 +63,15 @@ def _schema():
     return yaml.safe_load(SCHEMA.read_text(encoding="utf-8"))
 
 
-def _refused(config, key, problem):
-    value = config
+def _value(config, key):
     for part in key:
-        value = value[part]
-    return ConfigError(f"{dotted(key)} = {shown(value)} {problem}", key=key)
+        config = config[part]
+    return config
+
+
+def _refused(config, key, problem, *others):
+    value = shown(_value(config, key))
+    return ConfigError(f"{dotted(key)} = {value} {problem}", key=key, others=others)
 
 
 @contextmanager
@@ -141,17 +146,12 @@ def _check_names(config):
         _check_known(config, key, known)
     for name, parameters in ergodic_scenes(config).items():
         if scene_of(parameters).dimension > 2:
-            raise _refused(
-                config, ("theorems", "ergodicity", "scenes"), f"has {name!r}, which has more than "
-                "two state variables; choose scenes with one or two"
-            )  # fmt: skip
+            problem = f"has {name!r}, of more than two state variables; choose others"
+            raise _refused(config, ("theorems", "ergodicity", "scenes"), problem)
 
 
 def _check_known(config, key, choice, kind=""):
-    names = config
-    for part in key:
-        names = names[part]
-    for name in names:
+    for name in _value(config, key):
         if name not in choice:
             raise ConfigError(
                 f"{dotted(key)} has {shown(name)}, which is not a {kind}scene of the sweep; "
@@ -172,9 +172,7 @@ def _check_increasing(config):
         *(("rates", "scenes", name, "n") for name in config["rates"]["scenes"]),
     ]
     for key in keys:
-        numbers = config
-        for part in key:
-            numbers = numbers[part]
+        numbers = _value(config, key)
         if sorted(numbers) != numbers:
             raise _refused(config, key, "must increase; sort them")
 
@@ -187,11 +185,12 @@ def _check_dry_friction(config):
         key = (topic, "scene", "model" if parameters["model"] != "friction" else "potential")
         key = (topic, "scene", "noise") if scene.noise.kind != "white" else key
         if scene.state != ("y",) or scene.noise.kind != "white":
-            raise _refused(
-                config, key, f"has the state ({', '.join(scene.state)}) with {scene.noise.title}, "
-                "but the reference solver takes (y) with white noise only; choose friction with "
-                "potential '0' and g of y"
-            )  # fmt: skip
+            problem = (
+                f"has the state ({', '.join(scene.state)}) with {scene.noise.title}, but the "
+                "reference solver takes (y) with white noise only; choose friction with potential "
+                "'0' and g of y"
+            )
+            raise _refused(config, key, problem)
     for key, scheme in (
         (("variance",), config["variance"]["finite_difference"]),
         (("convergence",), config["convergence"]["finite_difference"]),
@@ -204,20 +203,19 @@ def _check_dry_friction(config):
 def _check_grid(config, key, parameters, many, scheme):
     nodes = scheme["nodes"]
     if nodes % 8 != 1:
-        raise _refused(
-            config, (*key, "nodes"), "must be a multiple of 8 and one more, so that the mesh and "
-            f"the domain can be halved; use {nodes // 8 * 8 + 1}"
-        )  # fmt: skip
+        problem = (
+            "must be a multiple of 8 and one more, so that the mesh and the domain can be halved; "
+            f"use {nodes // 8 * 8 + 1}"
+        )
+        raise _refused(config, (*key, "nodes"), problem)
     # the error takes a mesh twice as wide
     width = 4 * scheme["half_width"] / (nodes - 1)
     for n in many:
         scene = scene_of(parameters | {"n": n})
         drift = vectorised(scene.numerical_drift()[symbols.y], (symbols.y,))
         if abs(drift(scheme["half_width"])) * width > scene.noise.sigma**2:
-            raise _refused(
-                config, (*key, "nodes"), f"are too few for half_width = {scheme['half_width']}: "
-                "the paper's scheme oscillates; use more nodes"
-            )  # fmt: skip
+            problem = f"are too few for half_width = {scheme['half_width']}; use more nodes"
+            raise _refused(config, (*key, "nodes"), problem, (*key, "half_width"))
 
 
 def _check_times(config):
@@ -225,82 +223,71 @@ def _check_times(config):
 
     Those of figure 2a are multiples of first_time/10, and the error takes twice the step.
     """
-    variance, convergence = config["variance"], config["convergence"]
-    unit, horizon = variance["first_time"] / 10, variance["horizon"]
-    if horizon <= variance["first_time"] or not _divides(unit, horizon):
-        raise _refused(
-            config, ("variance", "horizon"), "must be a larger multiple of variance.first_time/10 "
-            f"= {unit:g}; change either"
-        )  # fmt: skip
-    for topic, whole, name in (
-        ("variance", unit, f"variance.first_time/10 = {unit:g}"),
-        ("convergence", convergence["horizon"], f"convergence.horizon = {convergence['horizon']}"),
+    first, last = ("variance", "first_time"), ("variance", "horizon")
+    unit, horizon = _value(config, first) / 10, _value(config, last)
+    if horizon <= 10 * unit or not _divides(unit, horizon):
+        problem = f"must be a larger multiple of variance.first_time/10 = {unit:g}; change either"
+        raise _refused(config, last, problem, first)
+    for whole, part, name in (
+        (first, unit, "variance.first_time/10"),
+        (("convergence", "horizon"), config["convergence"]["horizon"], "convergence.horizon"),
     ):
-        key = (topic, "finite_difference", "time_step")
-        if not _divides(2 * config[topic]["finite_difference"]["time_step"], whole):
-            raise _refused(config, key, f"must be a half of a divisor of {name}; change either")
+        key = (whole[0], "finite_difference", "time_step")
+        if not _divides(2 * _value(config, key), part):
+            problem = f"must be half of a divisor of {name} = {part:g}; change either"
+            raise _refused(config, key, problem, whole)
 
 
 def _divides(part, whole):
     return whole >= part and abs(whole / part - round(whole / part)) < 1e-9 * whole / part
 
 
-def _check_finite_p(finite_p, crossing):
+def _check_finite_p(config):
     """Refuse a T of table 9 at which the formulas or Monte Carlo have no value."""
-    config, horizon = {"finite_p": finite_p}, finite_p["tabulated"]
-    interval = crossing["horizon"] / crossing["outputs"]
-    if (
-        horizon not in finite_p["horizons"]
-        or not _divides(interval, horizon)
-        or horizon > crossing["horizon"]
-    ):
-        raise _refused(
-            config, ("finite_p", "tabulated"), "must be one of finite_p.horizons, at most "
-            f"crossing.horizon, and a multiple of crossing.horizon/crossing.outputs = "
-            f"{interval:g}; change it"
-        )  # fmt: skip
+    crossing, finite_p = config["crossing"], config["finite_p"]
+    last, outputs = ("crossing", "horizon"), ("crossing", "outputs")
+    interval, horizon = crossing["horizon"] / crossing["outputs"], finite_p["tabulated"]
+    if not _divides(interval, horizon) or horizon > crossing["horizon"]:
+        problem = (
+            f"must be at most crossing.horizon = {crossing['horizon']:g} and a multiple of "
+            f"crossing.horizon/crossing.outputs = {interval:g}; change it"
+        )
+        raise _refused(config, ("finite_p", "tabulated"), problem, last, outputs)
+    if horizon not in finite_p["horizons"]:
+        problem = f"must be one of finite_p.horizons = {shown(finite_p['horizons'])}; change it"
+        raise _refused(config, ("finite_p", "tabulated"), problem, ("finite_p", "horizons"))
     if finite_p["first_time"] > 0.5 * crossing["horizon"]:
-        raise _refused(
-            config, ("finite_p", "first_time"), "leaves less than half of crossing.horizon = "
-            f"{crossing['horizon']}; lower it"
-        )  # fmt: skip
+        problem = f"is above half of crossing.horizon = {crossing['horizon']:g}; lower it"
+        raise _refused(config, ("finite_p", "first_time"), problem, last)
 
 
-def _check_speed(speed):
+def _check_speed(config):
     """Refuse lists that do not fit each other, and steps that are no divisors."""
-    config = {"speed_against_error": speed}
-    for topic, first, second in (
-        (("pde", "fitted_grid"), "cells", "steps"),
-        (("pde", "libraries"), "elements", "steps"),
-        (("crossing",), "degrees", "contours"),
+    topic = ("speed_against_error",)
+    for section, first, second in (
+        ((*topic, "pde", "fitted_grid"), "cells", "steps"),
+        ((*topic, "pde", "libraries"), "elements", "steps"),
+        ((*topic, "crossing"), "degrees", "contours"),
     ):
-        own = speed
-        for part in topic:
-            own = own[part]
-        if len(own[first]) != len(own[second]):
-            raise _refused(
-                config, ("speed_against_error", *topic, second), "must have an entry for each of "
-                f"the {len(own[first])} {first}; add or delete some"
-            )  # fmt: skip
-    pde, cost, pathwise = speed["pde"], speed["cost"], speed["pathwise"]
-    key = ("speed_against_error", "pde", "paper_scheme")
-    for nodes in pde["paper_scheme"]["nodes"]:
+        count = len(_value(config, (*section, first)))
+        if len(_value(config, (*section, second))) != count:
+            problem = f"must have an entry for each of the {count} {first}; add or delete some"
+            raise _refused(config, (*section, second), problem, (*section, first))
+    scheme, last = (*topic, "pde", "paper_scheme"), (*topic, "pde", "horizon")
+    for nodes in _value(config, (*scheme, "nodes")):
         if nodes % 2 == 0:
-            raise _refused(config, (*key, "nodes"), f"has {nodes}; nodes must be odd, add one")
-    for step in pde["paper_scheme"]["time_steps"]:
-        if not _divides(step, pde["horizon"]):
-            raise _refused(
-                config, (*key, "time_steps"), f"has {step}, which does not divide pde.horizon = "
-                f"{pde['horizon']}; change it"
-            )  # fmt: skip
-    for horizon in cost["horizons"]:
-        if not _divides(cost["paper_scheme"]["time_step"], horizon):
-            raise _refused(
-                config, ("speed_against_error", "cost", "horizons"), f"has {horizon}, no multiple "
-                f"of cost.paper_scheme.time_step = {cost['paper_scheme']['time_step']}; change it"
-            )  # fmt: skip
-    if max(pathwise["doublings"]) >= pathwise["reference"]:
-        raise _refused(
-            config, ("speed_against_error", "pathwise", "doublings"), "must be below "
-            f"pathwise.reference = {pathwise['reference']}; leave out the larger ones"
-        )  # fmt: skip
+            problem = f"has {nodes}, but nodes must be odd; add one"
+            raise _refused(config, (*scheme, "nodes"), problem)
+    for step in _value(config, (*scheme, "time_steps")):
+        if not _divides(step, _value(config, last)):
+            problem = f"has {step}, which does not divide pde.horizon; change it"
+            raise _refused(config, (*scheme, "time_steps"), problem, last)
+    step, horizons = (*topic, "cost", "paper_scheme", "time_step"), (*topic, "cost", "horizons")
+    for horizon in _value(config, horizons):
+        if not _divides(_value(config, step), horizon):
+            problem = f"must divide all of cost.horizons, but not {horizon}; change it"
+            raise _refused(config, step, problem, horizons)
+    doublings, finest = (*topic, "pathwise", "doublings"), (*topic, "pathwise", "reference")
+    if max(_value(config, doublings)) >= _value(config, finest):
+        problem = f"must be below pathwise.reference = {_value(config, finest)}; leave out others"
+        raise _refused(config, doublings, problem, finest)

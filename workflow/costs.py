@@ -5,7 +5,7 @@ which the estimates meet within a factor of three. They are there to refuse what
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import ceil, isfinite
 
@@ -89,6 +89,7 @@ def _refuse(config, cost, amount, limit):
         f"{_blamed(config, cost)}: the run would take about {amount}, above "
         f"'limits.{limit}' = {config['limits'][limit]}; reduce it or raise the limit",
         key=_largest(cost),
+        others=[("limits", limit)],
     )
 
 
@@ -129,7 +130,9 @@ def costs(config: dict) -> Iterator[Cost]:
     yield from _limit_theorem(config["limit_theorem"], config["sweep"]["scenes"])
     yield from _plasticity(config["plasticity"])
     yield from _rates(config["rates"])
-    yield from _speed(config["speed_against_error"])
+    rounds = {("speed_against_error", "rounds"): config["speed_against_error"]["rounds"]}
+    for cost in _speed(config["speed_against_error"]):
+        yield replace(cost, sizes=cost.sizes | rounds)
     paths = config["hard_cases"]["paths"]
     yield Cost({("hard_cases", "paths"): paths}, 60 * paths / 20_000, JOB_BYTES + 32 * paths)
 

@@ -73,21 +73,22 @@ def _require_own(name, text, place):
         raise _refused(name, text, "holds other files than results; choose a folder below it")
     if place.parts[1:2] in (("proc",), ("sys",), ("dev",)) and place.parts[2:3] != ("shm",):
         raise _refused(name, text, "is a folder of the operating system; choose another")
-    if place.is_relative_to(ROOT):
-        first = place.relative_to(ROOT).parts[0]
-        # some file systems do not tell upper from lower case
-        mixed = name == "results" and first.casefold() == "paper"
-        if first.casefold() in SOURCES or first.startswith(".") or mixed:
-            raise _refused(
-                name, text, f"lies in {first!r}, which is for sources; choose a folder such as "
-                "results/mine"
-            )  # fmt: skip
+    # where it is, and where it seems to be
+    for path in (place, Path(os.path.normpath(ROOT / text))):
+        if path.is_relative_to(ROOT):
+            first = path.relative_to(ROOT).parts[0]
+            mixed = name == "results" and first.casefold() == "paper"
+            # some file systems do not tell upper from lower case
+            if first.casefold() in SOURCES or first.startswith(".") or mixed:
+                raise _refused(
+                    name,
+                    text,
+                    f"lies in {first!r}, where sources are; choose a folder such as results/mine",
+                )
     for file in _tracked():
         if file == place or (place in file.parents and file != ROOT / "results" / "README.md"):
-            raise _refused(
-                name, text, f"holds {str(file.relative_to(ROOT))!r}, which git tracks; choose "
-                "another, such as results/mine"
-            )  # fmt: skip
+            problem = f"holds {str(file.relative_to(ROOT))!r}, which git tracks; choose another"
+            raise _refused(name, text, problem)
 
 
 @lru_cache(maxsize=1)
@@ -115,10 +116,8 @@ def _require_writable(name, text, place):
     if not folder.is_dir():
         raise _refused(name, text, f"is impossible: {str(folder)!r} is no folder; choose another")
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise _refused(
-            name, text, f"cannot be written into {str(folder)!r}; make it writable or choose "
-            "another folder"
-        )  # fmt: skip
+        problem = f"cannot be written into {str(folder)!r}; make it writable or choose another"
+        raise _refused(name, text, problem)
 
 
 def _is_typeset(path):

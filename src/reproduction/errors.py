@@ -1,6 +1,6 @@
 """The errors of the workflow: each message is one line naming the offender and the cure."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -18,11 +18,19 @@ class ConfigError(NonsmoothError):
         Where: the file, which becomes the beginning of the message.
     key : tuple
         Keys and positions of the value to blame, from the outermost to the innermost.
+    others : sequence of tuple
+        Keys of values that it does not fit.
     """
 
-    def __init__(self, message: str, place: str | Path = "", key: tuple = ()) -> None:
+    def __init__(
+        self,
+        message: str,
+        place: str | Path = "",
+        key: tuple = (),
+        others: Sequence[tuple] = (),
+    ) -> None:
         super().__init__(f"{place}: {message}" if place else message)
-        self.key = key
+        self.keys = (key, *others)
 
 
 class ArtifactError(NonsmoothError):

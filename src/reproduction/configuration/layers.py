@@ -53,21 +53,23 @@ class Layers:
         """The configuration that they make."""
         return reduce(_over, (own for _, own in self.layers), {})
 
-    def origin(self, key: tuple) -> str:
-        """Return the name of the layer that has the last word on a key.
+    def origin(self, *keys: tuple) -> str:
+        """Return the name of the layer that has the last word on keys.
 
         Parameters
         ----------
-        key : tuple
+        *keys : tuple
             Keys and positions, from the outermost to the innermost.
         """
-        depth = {name: _depth(own, key) for name, own in self.layers}
-        deepest = max(depth.values())
-        return [name for name, value in depth.items() if value == deepest][-1]
+        last = 0
+        for key in keys:
+            depth = [_depth(own, key) for _, own in self.layers]
+            last = max(last, *(k for k, value in enumerate(depth) if value == max(depth)))
+        return self.layers[last][0]
 
     def named(self, error: ConfigError) -> ConfigError:
         """Return the error with the layer that is to blame at its beginning."""
-        return ConfigError(str(error), self.origin(error.key))
+        return ConfigError(str(error), self.origin(*error.keys))
 
 
 def _over(base, own):
