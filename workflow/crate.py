@@ -143,10 +143,10 @@ def crate_of(jobs: list[Job], target: str, config: str, agent: str) -> ROCrate:
     made = {path for job in jobs for path in job.outputs}
     sources = {path for job in jobs for path in job.inputs} - made | {"config.yaml", config}
     files = {path: _file(crate, path) for path in sorted(made | sources)}
-    for path in sorted({*ABOUT, *_workflow_files()} - files.keys()):
+    for path in sorted({*ABOUT, *_program()} - files.keys()):
         _file(crate, path)
     crate.dereference("README.md")["about"] = crate.root_dataset
-    main["hasPart"] = [crate.dereference(path) for path in _workflow_files() if ".smk" in path]
+    main["hasPart"] = [crate.dereference(path) for path in _program() if path.endswith(".smk")]
     who = {"agent": {"@id": crate.add(_person(crate, agent)).id}} if agent else {}
     _actions(crate, jobs, files, who)
     run = crate.add_action(
@@ -224,12 +224,13 @@ def _workflow(crate, citation, versions):
     return main
 
 
-def _workflow_files():
-    """Rules, scripts, schemas and environments."""
+def _program():
+    """Rules, scripts, schemas, environments and modules."""
     return [
         path.as_posix()
-        for path in sorted(Path("workflow").rglob("*"))
-        if path.is_file() and path.suffix != ".pyc"
+        for folder in (Path("src"), Path("workflow"))
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and "__pycache__" not in path.parts and ".egg-info" not in path.as_posix()
     ]
 
 

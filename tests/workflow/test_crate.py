@@ -134,6 +134,9 @@ def test_every_file_is_in_it_with_its_checksum(packed, graph):
     assert {f"results/smoke/{name}" for name in artifacts} <= names
     assert {"config.yaml", "config/smoke.yaml", "environment-lock.txt", "LICENSE"} <= names
     assert {"Snakefile", "workflow/rules/common.smk", "workflow/experiment.py"} <= names
+    root = results.parents[1]
+    modules = {path.relative_to(root).as_posix() for path in (root / "src").rglob("*.py")}
+    assert modules <= names
 
 
 def test_an_artifact_leads_to_what_made_it(graph):
