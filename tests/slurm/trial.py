@@ -54,7 +54,10 @@ def run(name, options, targets):
 
 
 class Cancelling(threading.Thread):
-    """Cancels the first job of this run that has run for some seconds, once."""
+    """Cancels the first job of this run that has run for some seconds, once.
+
+    It is not one of an array, whose other jobs would fail too if it were the first of them.
+    """
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -69,7 +72,8 @@ class Cancelling(threading.Thread):
             queue = subprocess.run(listed, capture_output=True, text=True, check=False).stdout
             for identity, elapsed, name in map(str.split, queue.splitlines()):
                 minutes, seconds = map(int, elapsed.split(":")[-2:])
-                if 60 * minutes + seconds >= RUNNING and self.is_ours(name):
+                ready = 60 * minutes + seconds >= RUNNING and "_" not in identity
+                if ready and self.is_ours(name):
                     subprocess.run(["scancel", identity], check=True)
                     self.job = identity
                     return
