@@ -125,7 +125,7 @@ def require_choice(name: str, value: Any, choices: Iterable[str]) -> str:
 
 
 def require_numbers(name: str, values: Any) -> np.ndarray:
-    """Return numbers as an array of floats of the same shape; none of them is nan."""
+    """Return numbers as an array of floats of the same shape; some may be 0 or infinite."""
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         _refuse(name, values, "fill in what is masked")
     try:
@@ -142,6 +142,9 @@ def require_numbers(name: str, values: Any) -> np.ndarray:
         found = found.astype(float)
     if np.any(np.isnan(found)):
         _refuse(name, values, "remove what is not a number")
+    size = np.abs(found)
+    if not np.all((size == 0) | (size == np.inf) | ((size >= SMALLEST) & (size <= LARGEST))):
+        _refuse(name, values, f"give numbers of sizes from {SMALLEST:g} to {LARGEST:g}")
     return found
 
 
@@ -150,9 +153,8 @@ def require_list(name: str, values: Any) -> np.ndarray:
     found = require_numbers(name, values)
     if found.ndim > 1 or found.size == 0:
         _refuse(name, values, "give one number or a list of them")
-    size = np.abs(found)
-    if not np.all((size == 0) | ((size >= SMALLEST) & (size <= LARGEST))):
-        _refuse(name, values, f"give finite numbers, of sizes from {SMALLEST:g} to {LARGEST:g}")
+    if not np.all(np.isfinite(found)):
+        _refuse(name, values, "give finite numbers")
     return np.atleast_1d(found)
 
 

@@ -178,8 +178,8 @@ class _Path:
         ):
             if np.any(wrong):
                 raise SceneError(f"Brownian motion from 0 needs {need}; choose such a one")
-        self.began = np.finfo(float).tiny <= T  # below, 1 / T overflows
-        self.T = np.where(self.began, T, 1.0)
+        self.began = T != 0
+        self.T = np.where(T == 0, 1.0, T)
         near, far = np.minimum(b, -lower), np.maximum(b, -lower)
         reach = tuning.BROWNIAN_SERIES.reach * np.sqrt(self.T)
         self.near, self.far = np.minimum(near, reach), np.minimum(far, reach)

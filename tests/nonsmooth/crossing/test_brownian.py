@@ -129,6 +129,7 @@ def test_broadcasts_and_mirrors():
         ((1.0, -1.0), "horizon T >= 0"),
         ((1.0, np.inf), "finite horizon"),
         ((np.nan, 1.0), "b is nan"),
+        ((1.0, 5e-324), "T is 5e-324; give numbers of sizes"),
         (([1.0, 2.0], [1.0, 2.0, 3.0]), "shapes that broadcast"),
     ],
 )
