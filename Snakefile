@@ -6,6 +6,16 @@ from pathlib import Path
 from reproduction.configuration.layers import Layers
 from reproduction.errors import ConfigError
 from workflow.checks import check
+
+# config.yaml, then what the command line lays over it
+given = workflow.config_settings
+defaults = [] if given.replace_workflow_config else ["config.yaml"]
+try:
+    check(Layers.of_files([*defaults, *workflow.overwrite_configfiles], given.config))
+except ConfigError as error:
+    sys.exit(f"error: {error}")
+
+# what is refused need not wait for these
 from workflow.dependencies import sources
 from workflow.experiment import (
     ergodic_scenes,
@@ -18,14 +28,6 @@ from workflow.experiment import (
     swept,
 )
 from workflow.failures import hints
-
-# config.yaml, then what the command line lays over it
-given = workflow.config_settings
-defaults = [] if given.replace_workflow_config else ["config.yaml"]
-try:
-    check(Layers.of_files([*defaults, *workflow.overwrite_configfiles], given.config))
-except ConfigError as error:
-    sys.exit(f"error: {error}")
 
 
 configfile: "config.yaml"

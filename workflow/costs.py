@@ -15,7 +15,7 @@ from reproduction.configuration.schema import dotted, shown
 from reproduction.errors import ConfigError
 from reproduction.plasticity import yielding_oscillator
 from reproduction.time_scales import contact_time
-from workflow.experiment import scene_of
+from workflow.scenes import scene_of
 
 GB = 1e9
 # imports, compiled kernels and their arrays: benchmarks/tables and benchmarks/crossing

@@ -1,32 +1,11 @@
 """What the rules derive from the configuration."""
 
-from functools import cache
 from math import ceil, isfinite
-
-from nonsmooth.scenes.scene import Scene, by_formulas
 
 
 def label(number: float) -> str:
     """Spell a number of the configuration as it stands in file names."""
     return f"{float(number):.17g}"
-
-
-def scene_of(parameters: dict) -> Scene:
-    """Return the scene of a table of parameters; each is made once."""
-    return _scene_of(
-        tuple(
-            (name, tuple(value.items()) if isinstance(value, dict) else value)
-            for name, value in parameters.items()
-        )
-    )
-
-
-@cache
-def _scene_of(items):
-    parameters = dict(items)
-    if isinstance(parameters["noise"], tuple):
-        parameters["noise"] = dict(parameters["noise"])
-    return by_formulas(parameters)
 
 
 def swept(config: dict) -> dict[str, dict]:

@@ -10,6 +10,7 @@ written. Exits with status 1 if anything is bad.
 """
 
 import argparse
+import resource
 import shutil
 import subprocess
 import sys
@@ -84,14 +85,27 @@ def faults(mutation: Mutation, output: str) -> list[str]:
     return found
 
 
-def by_command(mutation: Mutation, folder: Path) -> tuple[str, list[str]]:
-    """Give a mutation to snakemake in a copy of the repository; return its answer and faults."""
+def by_command(mutation: Mutation, folder: Path) -> tuple[str, list[str], float]:
+    """Give a mutation to snakemake in a copy of the repository.
+
+    Parameters
+    ----------
+    mutation : Mutation
+    folder : Path
+
+    Returns
+    -------
+    output : str
+    faults : list of str
+    seconds : float
+        Of the processor, which other programs do not lengthen.
+    """
     place = folder / mutation.file
     original = place.read_bytes()
     place.write_bytes(mutation.text)
     before = _listing(folder)
     options = [] if mutation.file == CONFIG else ["--configfile", SMOKE]
-    start = time.perf_counter()
+    start, before_run = time.perf_counter(), _processor_time()
     run = subprocess.run(
         [sys.executable, "-m", "snakemake", "--cores", "1", "--dry-run", *options],
         cwd=folder,
@@ -108,7 +122,12 @@ def by_command(mutation: Mutation, folder: Path) -> tuple[str, list[str]]:
     if _listing(folder) != before:
         found.append("files written")
     place.write_bytes(original)
-    return output, found
+    return output, found, _processor_time() - before_run
+
+
+def _processor_time():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _listing(folder):
@@ -141,7 +160,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--command", type=int, metavar="N", help="every N-th through snakemake")
     every = parser.parse_args().command
-    chosen, bad, counts, start = mutations(), 0, Counter(), time.perf_counter()
+    chosen, bad, counts = mutations(), 0, Counter()
+    start, longest = time.perf_counter(), 0.0
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if every:
@@ -149,7 +169,8 @@ def main() -> None:
             copy_of_repository(folder)
         for mutation in chosen:
             if every:
-                output, found = by_command(mutation, folder)
+                output, found, seconds = by_command(mutation, folder)
+                longest = max(longest, seconds)
             else:
                 output = answer(mutation, folder)
                 found = faults(mutation, output)
@@ -163,6 +184,8 @@ def main() -> None:
     print(f"mutations                     {len(chosen)}, of which legal {counts.pop('legal')}")
     for what, count in counts.most_common():
         print(f"{what:30}{count}")
+    if every:
+        print(f"{'longest, processor seconds':30}{longest:.1f}")
     print(f"{'bad':30}{bad}")
     print(f"{'seconds':30}{time.perf_counter() - start:.0f}")
     sys.exit(bool(bad))

@@ -37,5 +37,5 @@ def test_the_command_answers_likewise(tmp_path):
     kinds = ["YAML: unclosed bracket", "YAML: runs code", "misspelt key", "size", "formula: string"]
     chosen = [next(m for m in reversed(ALL) if m.kind == kind) for kind in kinds]
     for mutation in [*chosen, LEGAL[0]]:
-        output, found = by_command(mutation, tmp_path)
+        output, found, _ = by_command(mutation, tmp_path)
         assert not [fault for fault in found if not fault.startswith("slower")], output
