@@ -93,10 +93,10 @@ def rounding(scene: Scene, degree: int) -> float:
     """Bound the relative rounding error of all results.
 
     Entries of the stiffness matrix are of the size degree^2 / width and cancel when it is applied
-    to smooth functions. Widths are in units of C_b^(-1/2), over which these functions change. The
-    factor in front was fitted, see `tuning.SPECTRAL_ELEMENTS`.
+    to smooth functions. Widths are in units of sigma C_b^(-1/2), over which these functions change.
+    The factor in front was fitted, see `tuning.SPECTRAL_ELEMENTS`.
     """
-    width = np.min(np.diff(mesh(scene))) * np.sqrt(scene.damping)
+    width = np.min(np.diff(mesh(scene))) * np.sqrt(scene.damping) / scene.noise.sigma
     factor = tuning.SPECTRAL_ELEMENTS.rounding
     return factor * np.finfo(float).eps * degree**2 * max(1.0, 1 / width)
 
@@ -160,4 +160,4 @@ def moments_with_rounding(
 def _decayed(rate, tau):
     """Integral of exp(-rate s) over [0, tau]; tau where the rate is 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(rate * tau < 1e-12, tau, -np.expm1(-rate * tau) / rate)
+        return np.where(rate * tau < np.finfo(float).eps, tau, -np.expm1(-rate * tau) / rate)

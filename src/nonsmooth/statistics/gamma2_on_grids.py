@@ -5,9 +5,12 @@ Otherwise, and with more variables, the combination technique finds out how fine
 must be resolved. Its error is what the grids beyond those combined would add.
 """
 
+import functools
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+
+import numpy as np
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.estimate import require
@@ -170,7 +173,14 @@ def _combined(scene, tol):
         lambda index: gamma2_on(scene, grid(index), accuracy),
         lambda index: points(scene, grid(index)),
     )
-    _enlarge(combination, error, tol, grid_tuning.TENSOR_GRIDS.largest[count])
+    terms = functools.cache(lambda: _size_of_terms(scene, coarse, accuracy))
+
+    def vanishes(combination):
+        """Whether nothing is left but what rounding and the grids leave of larger terms."""
+        bound = error(combination)
+        return combination.value <= bound < math.inf and bound <= chosen.vanishing * terms()
+
+    _enlarge(combination, error, tol, grid_tuning.TENSOR_GRIDS.largest[count], vanishes)
     value, reached = combination.value, error(combination)
     best = grid(combination.dearest())
     if not reached <= tol * value:
@@ -178,10 +188,13 @@ def _combined(scene, tol):
     return value, reached, best, accuracy
 
 
-def _enlarge(combination, error, tol, largest):
-    """Add grids to a combination until its error is small enough, or nothing affordable is left."""
+def _enlarge(combination, error, tol, largest, vanishes):
+    """Add grids to a combination until its error is small enough, or there is no hope of that.
+
+    There is none if nothing affordable is left, or gamma^2 is 0.
+    """
     left = tuning.GAMMA2_ON_GRIDS.work * largest
-    while not error(combination) <= tol * combination.value:
+    while not (error(combination) <= tol * combination.value or vanishes(combination)):
         try:
             cost = combination.refine(min(largest, left))
         except ToleranceError:  # a finer grid on which the iteration does not converge
@@ -189,6 +202,14 @@ def _enlarge(combination, error, tol, largest):
         left -= cost
         if not cost:
             return
+
+
+def _size_of_terms(scene, grid, accuracy):
+    """2 E |g u|, which is far above gamma^2 = 2 E[g u] where the terms cancel."""
+    axes, solve = solver(scene, grid)
+    g = solve.fold(evaluate(scene.numerical_observable(), axes))
+    u, mean = solve.solve(g, ODD, accuracy)
+    return 2 * solve.solve(np.abs((g - mean) * u), EVEN, accuracy)[1]
 
 
 def _refuse(scene, grid, value, error, tol, accuracy):

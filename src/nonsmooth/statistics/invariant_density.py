@@ -84,7 +84,7 @@ def invariant_density(
     clipped = {key: not_negative(found[key], difference[key]) for key in found}
     return _dataset(
         {key: value for key, (value, _) in clipped.items()},
-        {key: np.max(error) for key, (_, error) in clipped.items()},
+        {key: np.max(error) + _outside(value, tol) for key, (value, error) in clipped.items()},
         points,
     )
 
@@ -240,7 +240,8 @@ def bin_averages(
     -------
     dict
         Name -> (averages, errors), of each bin. On grids the difference of two of them oscillates
-        from bin to bin; the error of a bin is the largest of those near it.
+        from bin to bin; the error of a bin is twice the largest of those near it, at most the
+        largest of all, and what the density may be outside of the grids.
 
     Raises
     ------
@@ -258,13 +259,23 @@ def bin_averages(
         scene, grid, tol, lambda grid: _averages_on(scene, grid, edges, accuracy)
     )
     clipped = {name: not_negative(found[name], error[name]) for name in found}
-    return {name: (value, _largest_near(error)) for name, (value, error) in clipped.items()}
+    return {
+        name: (value, _largest_near(error) + _outside(value, tol))
+        for name, (value, error) in clipped.items()
+    }
 
 
 def _largest_near(error):
-    """Take the largest error of the bins around each, a twentieth of all to each side."""
-    reach = math.ceil(len(error) * tuning.INVARIANT_DENSITY.near)
-    return maximum_filter1d(error, 2 * reach + 1, mode="nearest")
+    """Take the largest error of the bins around each, with a margin; at most that of all bins."""
+    chosen = tuning.INVARIANT_DENSITY
+    reach = math.ceil(len(error) * chosen.near)
+    around = maximum_filter1d(error, 2 * reach + 1, mode="nearest")
+    return np.minimum(chosen.safety * around, np.max(error))
+
+
+def _outside(value, tol):
+    """Size of a density outside the box of `depth_for(tol)`, where the grids have none."""
+    return math.exp(-tensor_grid.depth_for(tol)) * np.max(value)
 
 
 def _averages_of_closed_form(scene, closed, edges):

@@ -23,6 +23,9 @@ class Gamma2OnGrids:
     stiff: float = 1e7  # chosen: n in place of inf; the rest, of order 1/n, is extrapolated
     stiff_elastic: float = 1e12  # chosen: the same for elastic walls; the rest is n^(-1/2)
     softer: float = 1e-2  # chosen: the second n of the extrapolation, relative to the first
+    # chosen: a gamma^2 below its error is taken for 0 if both are below this part of the terms that
+    # cancel; coboundaries such as g = y between walls reach 1e-7 on coarse grids
+    vanishing: float = 1e-6
     long: float = 100.0  # chosen: relaxation times; a scene correlated for longer is called slow
 
 
@@ -60,6 +63,9 @@ class InvariantDensity:
     # chosen: part of all bins whose errors count for a bin, on either side; the difference of two
     # grids changes its sign several times over the bins
     near: float = 0.05
+    safety: float = (
+        2.0  # chosen: the error of a bin is so many times the largest difference near it
+    )
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+import nonsmooth as ns
 from nonsmooth.errors import SceneError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.paths.ensembles import paths_at
@@ -84,3 +85,18 @@ def test_the_nonsmooth_limit_is_refused():
     """At n = inf part of the mass is on the walls, so that there is no density."""
     with pytest.raises(SceneError, match="finite n"):
         bin_averages(PLASTIC.with_n(math.inf), {"y": [-1, 1]}, 1e-2)
+
+
+@pytest.mark.parametrize(
+    ("n", "damping", "sigma", "bins"), [(265.0, 2.0, 1.5, 161), (1.0, 1.0, 1.0, 61)]
+)
+def test_loose_averages_are_within_their_errors_in_every_bin(n, damping, sigma, bins):
+    """Also where two grids agree by chance, in tails, and beyond the box; and none is negative."""
+    scene = ns.Scene("friction", ns.Langevin("eta**2/2", sigma), n=n, damping=damping)
+    edges = {"y": np.linspace(-4, 4, bins + 1)}
+    (loose, loose_error), (tight, tight_error) = (
+        bin_averages(scene, edges, tol)["y"] for tol in (1e-1, 1e-3)
+    )
+    assert np.all(np.abs(loose - tight) <= loose_error + tight_error)
+    assert np.all(loose >= 0)
+    assert np.max(loose_error) <= 0.1 * np.max(loose) * (1 + 1e-3)
