@@ -85,15 +85,21 @@ def _require_own(name, text, place):
                     text,
                     f"lies in {first!r}, where sources are; choose a folder such as results/mine",
                 )
-    for file in _tracked():
+    for file in tracked():
         if file == place or (place in file.parents and file != ROOT / "results" / "README.md"):
             problem = f"holds {str(file.relative_to(ROOT))!r}, which git tracks; choose another"
             raise _refused(name, text, problem)
 
 
 @lru_cache(maxsize=1)
-def _tracked():
-    """List what git tracks here; nothing where there is no git or no repository of its own."""
+def tracked() -> list[Path]:
+    """List what git tracks here.
+
+    Returns
+    -------
+    list of Path
+        Empty where there is no git, or no repository of its own.
+    """
     if not (ROOT / ".git").exists():
         return []
     try:

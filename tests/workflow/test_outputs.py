@@ -21,9 +21,9 @@ def root(tmp_path, monkeypatch):
     for name in ("README.md", "config.yaml", "paper/paper.typ", "docs/speed_pde.pdf"):
         (root / name).write_text("a source\n")
     monkeypatch.setattr(outputs, "ROOT", root)
-    outputs._tracked.cache_clear()
+    outputs.tracked.cache_clear()
     yield root
-    outputs._tracked.cache_clear()
+    outputs.tracked.cache_clear()
 
 
 def refused(changes):
@@ -87,11 +87,10 @@ def test_a_file_that_this_workflow_did_not_typeset_is_kept(root):
 
 def test_what_git_tracks_is_kept(monkeypatch):
     """Whatever it is called."""
-    outputs._tracked.cache_clear()
-    if not outputs._tracked():
+    outputs.tracked.cache_clear()
+    if not outputs.tracked():
         pytest.skip("no git here")
-    tracked = [outputs.ROOT / "new/thesis.pdf"]
-    monkeypatch.setattr(outputs, "_tracked", lambda: tracked)
+    monkeypatch.setattr(outputs, "tracked", lambda: [outputs.ROOT / "new/thesis.pdf"])
     assert "which git tracks" in refused({"paper": "new/thesis.pdf"})
     assert "which git tracks" in refused({"results": "new"})
     check_outputs(USUAL)
