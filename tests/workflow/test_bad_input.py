@@ -4,6 +4,7 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
 RESULTS = "results/smoke"
 
@@ -30,6 +31,17 @@ def test_bad_configuration(repository, setting, message):
     assert len(lines_with(run, message)) == 1
     assert "Traceback" not in run.stdout + run.stderr
     assert not (repository.folder / "results").exists()
+
+
+def test_a_configuration_does_not_run_code(repository):
+    """A command hidden in a formula is refused and not run, also in a dry run."""
+    text = "exp(\"__import__('os').system('touch hacked')\")"
+    path = repository.folder / "stranger.yaml"
+    path.write_text(yaml.safe_dump({"crossing": {"scene": {"observable": text}}}))
+    run = repository.snakemake("--cores", "1", "--dry-run", "--configfile", str(path))
+    assert run.returncode != 0
+    assert len(lines_with(run, "cannot read the formula")) == 1
+    assert not list(repository.folder.rglob("hacked"))
 
 
 def truncated(path):

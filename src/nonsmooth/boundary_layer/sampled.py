@@ -81,7 +81,7 @@ def sampled_kappa(
     began = time.perf_counter()
     if not scene.is_odd():
         raise SceneError(
-            f"the extrapolation length is sampled for odd g, not for g = "
+            "the extrapolation length is sampled for odd g, not for g = "
             f"{quoted(scene.observable)} with the state ({', '.join(scene.state)}); choose such a g"
         )
     lag, paths = tuning.SAMPLED.lag * max(1.0, 1 / scene.damping), tuning.SAMPLED.paths

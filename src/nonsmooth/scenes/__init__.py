@@ -11,7 +11,7 @@ Nothing is solved in this package.
 - `noises`: `White`, `Langevin`, `Hamiltonian`, `OrnsteinUhlenbeck`, `KanaiTajimi` and their
   contract `Noise`
 - `penalties.Penalty`: the Moreau-Yosida regularisations, `ABSOLUTE_VALUE` and `BARRIER`
-- `formulas.parse`, `formulas.vectorised`: text to sympy, sympy to numpy, without `eval`
+- `formulas.parse`, `formulas.vectorised`: text to sympy, sympy to numpy; `formulas.compilable`
 - `magnitudes.require_moderate`: formulas of a size that double precision can compute with
 - `symbols`: the variables zeta, eta, y, x and the damping C_b
 - `thresholds.bounds`: the two levels of a threshold

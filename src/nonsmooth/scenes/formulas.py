@@ -8,7 +8,7 @@ import ast
 import math
 import operator
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -54,7 +54,12 @@ _FOREIGN = re.compile(r"[^A-Za-z0-9_+\-*/(). ,]")
 _NUMBER = r"(?>(?:\d[\d_]*\.?[\d_]*|\.\d[\d_]*)(?:[eE][+-]?\d[\d_]*)?)"
 _NUMBER_AND_NAME = re.compile(rf"(?<![\w.]){_NUMBER}[A-Za-z]\w*")
 _EXAMPLE = "write arithmetic, for example x**2/2 + 0.3*cos(x)"
+# sympy writes the derivatives of functions with these that may be complex
+_NOT_FORMULAS = (sympy.Derivative, sympy.re, sympy.im, sympy.arg, sympy.atan2, sympy.conjugate)
 _PART = 30  # characters of a part of a formula in a message, which has the formula already
+EVEN, ODD, NEITHER = 1, -1, 0
+_ODD_FUNCTIONS = (sympy.sin, sympy.sinh, sympy.tanh, sympy.atan, sympy.sign)
+_EVEN_FUNCTIONS = (sympy.cos, sympy.cosh, sympy.Abs)
 _TOO_DEEP = "it is nested too deeply; simplify it"
 
 
@@ -243,12 +248,113 @@ class _Reader:
         return in_range(value)
 
 
+def require_slope(text: str, expression: sympy.Expr, variable: sympy.Symbol) -> None:
+    """Check that a formula has a derivative that is a real function, but perhaps at kinks.
+
+    Parameters
+    ----------
+    text : str
+        The formula, for the message.
+    expression : sympy.Expr
+        What it means.
+    variable : sympy.Symbol
+
+    Raises
+    ------
+    ExpressionError
+        If it jumps, or a part of it is real only for some values of the variable and the
+        derivative is not a formula therefore.
+    """
+    slope = sympy.diff(expression, variable)
+    if slope.has(sympy.DiracDelta):
+        raise ExpressionError(
+            f"the formula {quoted(text)} has no derivative where its sign(...) jumps; use abs, max "
+            "or min"
+        )
+    if slope.has(*_NOT_FORMULAS):
+        raise ExpressionError(
+            f"the formula {quoted(text)} has no derivative, as it is not real everywhere; "
+            "put abs(...) into its roots and logarithms"
+        )
+
+
+def compilable(expression: sympy.Expr) -> sympy.Expr:
+    """Return an expression whose values are the same and which compilers understand.
+
+    Integers too large for a machine, as (x/10)**20 has them, become doubles. The derivative of a
+    jump, which the second derivative of a kink has, is 0 but at one point.
+
+    Raises
+    ------
+    ExpressionError
+        If it is a derivative that is not a formula.
+    """
+    known = {
+        number: sympy.Float(number)
+        for number in expression.atoms(sympy.Rational)
+        if max(abs(number.p), number.q) > 2**53
+    }
+    jumps = expression.atoms(sympy.DiracDelta, sympy.Derivative)
+    smooth = expression.xreplace(known | dict.fromkeys(jumps, sympy.Integer(0)))
+    if smooth.has(*_NOT_FORMULAS):
+        raise ExpressionError(
+            "the second derivative of a formula is not real everywhere; put abs(...) into its "
+            "roots and logarithms"
+        )
+    return smooth
+
+
+def parity(expression: sympy.Expr, variables: Collection[sympy.Symbol]) -> int:
+    """Tell how an expression changes if all variables change their signs.
+
+    The parts of the expression decide, which takes no time. Terms that only cancel after they
+    are multiplied out, as in (y + 1)**2 - (y - 1)**2, are not seen.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+    variables : collection of sympy.Symbol
+
+    Returns
+    -------
+    int
+        1 if it is even, -1 if it is odd, 0 if its structure shows neither. 0 itself is even.
+    """
+    if not expression.free_symbols.intersection(variables):
+        return EVEN
+    if expression.is_Symbol:
+        return ODD
+    if isinstance(expression, sympy.Piecewise):
+        return _of_branches(expression, variables)
+    parts = [parity(part, variables) for part in expression.args]
+    if expression.is_Add:
+        return parts[0] if len(set(parts)) == 1 else NEITHER
+    if expression.is_Mul:
+        return math.prod(parts)
+    if all(part == EVEN for part in parts):
+        return EVEN
+    if expression.is_Pow:
+        return parts[0] ** int(expression.exp % 2) if expression.exp.is_Integer else NEITHER
+    if NEITHER in parts or expression.func not in _ODD_FUNCTIONS + _EVEN_FUNCTIONS:
+        return NEITHER
+    return ODD if expression.func in _ODD_FUNCTIONS else EVEN
+
+
+def _of_branches(piecewise, variables):
+    mirrored = {variable: -variable for variable in variables}
+    for _, condition in piecewise.args:
+        if condition.subs(mirrored, simultaneous=True) != condition:
+            return NEITHER
+    parts = {parity(branch, variables) for branch, _ in piecewise.args if branch != 0}
+    return parts.pop() if len(parts) == 1 else NEITHER
+
+
 @lru_cache(maxsize=256)
 def vectorised(
     expression: sympy.Expr, variables: tuple[sympy.Symbol, ...]
 ) -> Callable[..., np.ndarray]:
     """Compile an expression to a numpy function of arrays, one argument per variable."""
-    function = sympy.lambdify(variables, expression, modules="numpy", cse=True)
+    function = sympy.lambdify(variables, compilable(expression), modules="numpy", cse=True)
 
     def evaluate(*values):
         shape = np.broadcast_shapes(*(np.shape(value) for value in values))

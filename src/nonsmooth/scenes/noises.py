@@ -13,7 +13,7 @@ import sympy
 from nonsmooth.checks import require_parameter
 from nonsmooth.errors import SceneError, quoted
 from nonsmooth.scenes import tuning
-from nonsmooth.scenes.formulas import parse, vectorised
+from nonsmooth.scenes.formulas import parse, require_slope, vectorised
 from nonsmooth.scenes.magnitudes import require_moderate
 from nonsmooth.scenes.symbols import eta, y, zeta
 
@@ -122,6 +122,7 @@ class Langevin:
     def __post_init__(self) -> None:
         object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
         require_moderate("v", self.potential, self.potential_expression, (eta,))
+        require_slope(self.potential, self.potential_expression, eta)
         far = np.array(tuning.FAR_OUT.distances)
         ends = np.concatenate([-far, far])
         with np.errstate(all="ignore"):
@@ -177,13 +178,16 @@ class Hamiltonian:
         object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
         require_moderate("H", self.H, self.energy, (eta, zeta))
         require_moderate("F", self.F, self.dissipation, (eta, zeta))
+        for variable in (eta, zeta):
+            require_slope(self.H, self.energy, variable)
         angle = np.linspace(0, 2 * np.pi, tuning.FAR_OUT.directions, endpoint=False)
         far = tuning.FAR_OUT.distances
         ends = np.outer(far, np.cos(angle)), np.outer(far, np.sin(angle))
         with np.errstate(all="ignore"):
             energy = vectorised(self.energy, (eta, zeta))(*ends)
             dissipation = vectorised(self.dissipation, (eta, zeta))(*ends)
-        if not np.all(np.diff(energy, axis=0) > 0):
+            growth = np.diff(energy, axis=0)
+        if not np.all(growth > 0):
             raise SceneError(
                 f"the Hamiltonian H = {quoted(self.H)} does not confine (eta, zeta); "
                 "it must grow in every direction, for example H = 'eta**2/2 + zeta**2/2'"

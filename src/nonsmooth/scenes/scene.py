@@ -22,7 +22,7 @@ from nonsmooth.checks import (
 )
 from nonsmooth.errors import AssumptionWarning, SceneError, quoted
 from nonsmooth.scenes import noises, symbols, tuning
-from nonsmooth.scenes.formulas import parse, vectorised
+from nonsmooth.scenes.formulas import ODD, parity, parse, require_slope, vectorised
 from nonsmooth.scenes.magnitudes import require_moderate
 from nonsmooth.scenes.models.model import Model
 from nonsmooth.scenes.models.registry import MODELS
@@ -85,11 +85,13 @@ class Scene:
                     f"{name} is {quoted(getattr(self, name))}; give a formula as a text"
                 )
         require_moderate("U", self.potential, self.potential_expression, (x,))
+        require_slope(self.potential, self.potential_expression, x)
         unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
         if unknown:
+            used = ", ".join(sorted(map(str, unknown)))
             raise SceneError(
-                f"the observable {quoted(self.observable)} uses {', '.join(map(str, unknown))}, "
-                f"which {self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
+                f"the observable {quoted(self.observable)} uses {used}, which "
+                f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
             )
         if not self.observes_penalty_force:
             require_moderate("g", self.observable, self.observable_expression, self.variables)
@@ -281,18 +283,17 @@ class Scene:
         return self.state == ("y",) and self.noise.kind == "white"
 
     def is_odd(self) -> bool:
-        """Whether g and the drift change sign with the state, so that E g = 0 by symmetry."""
+        """Whether g and the drift change sign with the state, so that E g = 0 by symmetry.
+
+        This is read off the structure of the formulas, see `formulas.parity`.
+        """
         return self._odd
 
     @cached_property
     def _odd(self):
-        mirrored = {s: -s for s in self.variables}
         odd = [self.observable_expression]
         odd += [self.drift[s] for s in self.variables if s.name in self.state]
-        return all(
-            sympy.simplify(sympy.piecewise_fold(f + f.subs(mirrored, simultaneous=True))) == 0
-            for f in odd
-        )
+        return all(f == 0 or parity(f, self.variables) == ODD for f in odd)
 
     def numerical_drift(self) -> dict[sympy.Symbol, sympy.Expr]:
         """Return `drift` with the scene's numbers in the place of n and C_b.

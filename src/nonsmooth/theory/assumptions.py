@@ -13,7 +13,7 @@ import scipy.linalg
 import sympy
 from scipy.optimize import minimize_scalar
 
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.noises import Hamiltonian, Langevin
 from nonsmooth.scenes.penalties import n as penalization
@@ -177,12 +177,12 @@ def _curvature_at_infinity(scene, U, slope):
         nearer = np.max(np.abs(slope(far / 10) / (far / 10)))
     if not (np.isfinite(steep) and steep <= 2 * nearer + chosen.quadratic):
         raise SceneError(
-            f"U = {scene.potential!r} violates (HU1), its derivative is not Lipschitz; "
+            f"U = {quoted(scene.potential)} violates (HU1), its derivative is not Lipschitz; "
             "use a potential of at most quadratic growth"
         )
     if not curvature > chosen.quadratic:
         raise SceneError(
-            f"U = {scene.potential!r} violates (HU2), U(x) >= c x**2 - C; "
+            f"U = {quoted(scene.potential)} violates (HU2), U(x) >= c x**2 - C; "
             "add a confining term such as x**2/2"
         )
     return curvature
@@ -206,7 +206,7 @@ def restoring_rate(noise: Langevin) -> float:
     r = least * (1 - tuning.ASSUMPTIONS.safety)
     if not r > 0:
         raise SceneError(
-            f"the noise potential v = {noise.potential!r} violates v'(eta) eta >= r eta**2; "
+            f"the noise potential v = {quoted(noise.potential)} violates v'(eta) eta >= r eta**2; "
             "use one that restores everywhere, for example v = 'eta**2/2'"
         )
     return r
@@ -234,8 +234,8 @@ def dissipation(noise: Hamiltonian) -> Dissipation:
     quadratic = k * eta**2 / 2 + zeta**2 / 2
     if k.free_symbols or damping.free_symbols or sympy.simplify(noise.energy - quadratic) != 0:
         raise SceneError(
-            f"no Lyapunov function for H = {noise.H!r}, F = {noise.F!r}: the paper assumes one; "
-            "use KanaiTajimi, for which it is constructed"
+            f"no Lyapunov function for H = {quoted(noise.H)}, F = {quoted(noise.F)}: the paper "
+            "assumes one; use KanaiTajimi, for which it is constructed"
         )
     k, damping = float(k), float(damping)
     cross = min(damping / 2, k / (2 * damping))

@@ -9,6 +9,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from nonsmooth.scenes.formulas import compilable
+
 
 @cache  # without a limit: a dropped function would leave kernels with an invalid address
 def compiled(
@@ -34,7 +36,7 @@ def compiled(
         state, whose rows are `width` long.
     """
     value = numba.njit(
-        sympy.lambdify(variables, expression, modules="math", cse=True),
+        sympy.lambdify(variables, compilable(expression), modules="math", cse=True),
         error_model="numpy",
         forceinline=True,
     )
