@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike
 from nonsmooth.errors import SceneError, quoted
 
 MOST_THREADS = 1024  # more than any machine has cores; each takes memory of the system
-# Of numbers between them the fourth power, and the product of three, are in double precision, which
-# reaches from 1e-308 to 1e308.
-SMALLEST, LARGEST = 1e-75, 1e75
+# Numbers between them are in single precision, in which paths are simulated, and products of several
+# in double precision.
+SMALLEST, LARGEST = 1e-30, 1e30
 # In units in which the mass, the slip force and the yield limit are 1, parameters of a scene are
 # seldom far from 1. Beyond these limits the square of a part of the equations is lost in rounding.
 PARAMETERS = 1e-9, 1e9
@@ -124,7 +124,9 @@ def require_choice(name: str, value: Any, choices: Iterable[str]) -> str:
     return str(value)
 
 
-def require_numbers(name: str, values: Any) -> np.ndarray:
+def require_numbers(
+    name: str, values: Any, least: float = SMALLEST, most: float = LARGEST
+) -> np.ndarray:
     """Return numbers as an array of floats of the same shape; some may be 0 or infinite."""
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         _refuse(name, values, "fill in what is masked")
@@ -143,8 +145,8 @@ def require_numbers(name: str, values: Any) -> np.ndarray:
     if np.any(np.isnan(found)):
         _refuse(name, values, "remove what is not a number")
     size = np.abs(found)
-    if not np.all((size == 0) | (size == np.inf) | ((size >= SMALLEST) & (size <= LARGEST))):
-        _refuse(name, values, f"give numbers of sizes from {SMALLEST:g} to {LARGEST:g}")
+    if not np.all((size == 0) | (size == np.inf) | ((size >= least) & (size <= most))):
+        _refuse(name, values, f"give numbers of sizes from {least:g} to {most:g}")
     return found
 
 

@@ -20,6 +20,8 @@ from nonsmooth.crossing import tuning
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.thresholds import bounds
 
+_SIZES = 1e-75, 1e75  # the fourth power of what is between is in double precision
+
 
 def brownian_crossing(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
     """Probability that W reaches b or the lower level before T, W_star of eq. (34) of the paper.
@@ -162,8 +164,8 @@ class _Path:
     """Levels and horizon, broadcast and checked, and the terms of the two series."""
 
     def __init__(self, b, T, lower):
-        b, T = require_numbers("b", b), require_numbers("T", T)
-        lower = -b if lower is None else require_numbers("lower", lower)
+        b, T = require_numbers("b", b, *_SIZES), require_numbers("T", T, *_SIZES)
+        lower = -b if lower is None else require_numbers("lower", lower, *_SIZES)
         try:
             b, lower, T = np.broadcast_arrays(b, lower, T)
         except ValueError:

@@ -96,7 +96,13 @@ def _with_one_variable(scene):
     scene = scene.with_start({})  # so that the mesh need not reach out to the starting point
 
     def solve(degree):
-        rate = float(eigenfunctions.spectrum(scene, degree).rates[1])
+        rates = eigenfunctions.spectrum(scene, degree).rates
+        if len(rates) < 2:  # the others are so fast that rounding has removed them
+            raise ToleranceError(
+                f"the rates of the scene with C_b = {scene.damping:g}, n = {scene.n:g} and sigma = "
+                f"{scene.noise.sigma:g} are lost in rounding; choose them closer to 1"
+            )
+        rate = float(rates[1])
         return rate, rate * tuning.SPECTRAL_GAP.rounding
 
     return tuning.SPECTRAL_GAP.degrees, solve, lambda found, own, allowed: 0.0
