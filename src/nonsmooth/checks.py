@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike
 from nonsmooth.errors import SceneError, quoted
 
 MOST_THREADS = 1024  # more than any machine has cores; each takes memory of the system
-# Numbers between them are in single precision, in which paths are simulated, and products of several
-# in double precision.
+# Numbers between them are in single precision, in which paths are simulated, and products of
+# several are in double precision.
 SMALLEST, LARGEST = 1e-30, 1e30
 # In units in which the mass, the slip force and the yield limit are 1, parameters of a scene are
 # seldom far from 1. Beyond these limits the square of a part of the equations is lost in rounding.
