@@ -1,4 +1,4 @@
-"""v(0, tau) by Monte Carlo: within its tolerance, or refused."""
+"""v(0, tau): within its error or refused, also of extreme scenes and at extreme times."""
 
 import numpy as np
 import pytest
@@ -41,3 +41,32 @@ def test_early_times_where_all_modes_cancel():
     # E Delta^2 = int int Cov = tau^3/3 (1 - 3 z/4 + ...), to 1e-9 relative for z < 1.2e-4
     exact = times**3 / 3 * (1 - 3 / 4 * z + 7 / 20 * z**2)
     assert np.all(np.abs(found["v"] - exact) <= found["v_error"] + 1e-9 * exact)
+
+
+@pytest.mark.parametrize(
+    ("damping", "sigma"), [(1.0, 1.0), (1e-3, 1.0), (1e3, 1.0), (1.0, 1e-3), (1.0, 1e3)]
+)
+def test_early_and_late_times_of_extreme_scenes(damping, sigma):
+    """With its kink far away friction is an Ornstein-Uhlenbeck process, of which v is known."""
+    scene = ns.Scene("friction", ns.White(sigma), n=1e-6, damping=damping)
+    z = np.array([1e-12, 1e-9, 1e-6, 1e-4, 0.1, 1.0, 100.0])
+    rate = damping + 1e-6
+    found = ns.variance(scene, z / rate, tol=1e-8 * (sigma / rate) ** 2)
+    exact = z - 2 * -np.expm1(-z) + -np.expm1(-2 * z) / 2
+    early = z < 1e-3  # where the terms above cancel; the rest of the series is below 1e-8 of it
+    exact[early] = (z**3 / 3 - z**4 / 4 + 7 * z**5 / 60)[early]
+    exact *= sigma**2 / rate**3
+    assert np.all(np.abs(found["v"] - exact) <= found["v_error"] + 1e-11 * exact)
+    assert np.all(found["v"] >= 0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("n", "damping"), [(1.0, 1e-3), (np.inf, 1.0)])
+def test_strong_noise_rounds_more(n, damping):
+    """Elements next to the kink are short against the velocity; v grows by gamma^2 per time."""
+    scene = ns.Scene("friction", ns.White(1e3), n=n, damping=damping)
+    gamma2 = ns.asymptotic_variance(scene, 1e-9)
+    time = 60 / ns.spectral_gap(scene).value
+    found = ns.variance(scene, [time, 2 * time], tol=gamma2.value)
+    slope = float(found["v"][1] - found["v"][0]) / time
+    assert abs(slope - gamma2.value) <= float(found["v_error"].sum()) / time + gamma2.error
