@@ -104,7 +104,7 @@ def attribute(path, rng, others):
 def rewrite(path, data):
     """Write a dataset in the place of an artifact with another program."""
     path.unlink()
-    data.to_netcdf(path)
+    data.drop_encoding().to_netcdf(path)
 
 
 def drop_variable(path, rng, others):
