@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from operator import length_hint
 from typing import Any
 
 import numpy as np
 from scipy.sparse.linalg import ArpackError
 
 from nonsmooth.errors import ToleranceError
+from nonsmooth.progress import counter
 
 
 @dataclass(frozen=True)
@@ -68,19 +70,21 @@ def until_agreement(
         If the equations of a level are singular in double precision.
     """
     solutions, estimate = [], None
-    for level in levels:
-        try:
-            solutions.append(solve(level))
-        except (np.linalg.LinAlgError, ArpackError) as error_of_library:
-            raise ToleranceError(
-                f"the equations are singular in double precision ({error_of_library}); give "
-                "parameters of more similar sizes or use Monte Carlo"
-            ) from None
-        if len(solutions) < 2:
-            continue
-        estimate = error(solutions)
-        if met(solutions[-1], estimate):
-            return Refined(solutions[-1], estimate, True, tuple(solutions))
-        if hopeless(solutions[-1], estimate):
-            break
+    with counter("levels of resolution", length_hint(levels)) as advance:
+        for level in levels:
+            try:
+                solutions.append(solve(level))
+            except (np.linalg.LinAlgError, ArpackError) as error_of_library:
+                raise ToleranceError(
+                    f"the equations are singular in double precision ({error_of_library}); give "
+                    "parameters of more similar sizes or use Monte Carlo"
+                ) from None
+            advance(1)
+            if len(solutions) < 2:
+                continue
+            estimate = error(solutions)
+            if met(solutions[-1], estimate):
+                return Refined(solutions[-1], estimate, True, tuple(solutions))
+            if hopeless(solutions[-1], estimate):
+                break
     return Refined(solutions[-1], estimate, False, tuple(solutions))

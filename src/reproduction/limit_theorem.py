@@ -46,7 +46,7 @@ def scaled_integrals(scene: Scene, p: ArrayLike, sampling: Sampling) -> np.ndarr
         return np.stack([panel.total[TOTAL_DELTA, :count], panel.data[PEAK, :count]])
 
     kept = over_blocks(scene, equal_steps(p, sampling.step), sampling, reduce, control=False)
-    return np.swapaxes(np.concatenate(kept, axis=2), 0, 1) / np.sqrt(p)[:, None]
+    return np.swapaxes(np.concatenate(list(kept), axis=2), 0, 1) / np.sqrt(p)[:, None]
 
 
 def normal_law(value: ArrayLike) -> np.ndarray:

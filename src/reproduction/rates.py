@@ -12,9 +12,9 @@ from scipy import stats
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.line.dry_friction import friction_variance
-from nonsmooth.paths.ensembles import integrals_at, parallel
+from nonsmooth.paths.ensembles import integrals_at
 from nonsmooth.paths.kernels.panel import STATE, new_panel
-from nonsmooth.paths.kernels.random_numbers import blocks
+from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_loop import march
@@ -47,6 +47,8 @@ def largest_distances(
         (one, registry.coefficients(one, sampling.scheme, horizon / steps, "float64"))
         for one in (scene, scene.with_n(math.inf))
     ]
+    for one, s in pair:
+        march(s, new_panel(one, sampling.seed, 0, "float64"), 0, 0, -np.inf, np.inf)
 
     def run(job):
         block, count = job
@@ -59,7 +61,7 @@ def largest_distances(
             np.maximum(largest, np.abs(difference), out=largest)
         return largest
 
-    return np.concatenate(parallel(run, blocks(0, sampling.paths), sampling.threads))
+    return np.concatenate(list(parallel(run, sampling, 2 * steps)))
 
 
 def variance_difference(scene: Scene, horizon: float, sampling: Sampling) -> tuple[float, float]:

@@ -15,11 +15,12 @@ import numpy as np
 from nonsmooth.boundary_layer import tuning
 from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.estimate import Estimate
-from nonsmooth.paths.ensembles import over_blocks, parallel, require_finite
+from nonsmooth.paths.ensembles import over_blocks, require_finite
 from nonsmooth.paths.kernels.compilation import kernel
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
-from nonsmooth.paths.kernels.random_numbers import blocks, labelled
+from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import bias_over_change
+from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
@@ -156,13 +157,14 @@ def _spread(scene, after, sampling):
 
     grid = [(after, sampling.step), (after, sampling.step)]
     pilot = replace(sampling, paths=tuning.SAMPLED.pilot_paths)
-    before, end = over_blocks(scene, grid, pilot, position, control=False)[0]
+    (before, end), *_ = over_blocks(scene, grid, pilot, position, control=False)
     return np.std(end - before)
 
 
 def _gains(scene, after, cycles, sampling):
     """For each path, sum the gains of its cycles and count the cycles: shape (cycles, 2, paths)."""
     s = registry.coefficients(scene, sampling.scheme, sampling.step, sampling.precision)
+    march(s, new_panel(scene, sampling.seed, 0, sampling.precision), 0, 0, *_EVERYWHERE)
 
     def run(job):
         block, lanes = job
@@ -175,10 +177,11 @@ def _gains(scene, after, cycles, sampling):
             for state, cycle in zip(states, cycles, strict=True):
                 if k % cycle.stride == 0:
                     _look(state, integral, cycle.threshold, cycle.after)
-        require_finite([integral])
+        require_finite(integral)
         return np.array(states)[:, -2:]
 
-    return np.concatenate(parallel(run, blocks(0, sampling.paths), sampling.threads), axis=2)
+    steps = (1 + tuning.SAMPLED.cycles) * after
+    return np.concatenate(list(parallel(run, sampling, steps)), axis=2)
 
 
 def _step_bias(scene, after, cycle, sampling):
@@ -188,6 +191,8 @@ def _step_bias(scene, after, cycle, sampling):
         for h in (sampling.step / 2, sampling.step)
     )
     given = registry.on_given_increments(coarse)
+    empty = new_panel(scene, sampling.seed, 0, sampling.precision)
+    march_pair(fine, given, empty, empty, 0, 0, *_EVERYWHERE, 0.0, np.empty((2, 0)))
 
     def run(job):
         block, lanes = job
@@ -204,11 +209,12 @@ def _step_bias(scene, after, cycle, sampling):
             advance(1)
             for state, integral in zip(states, integrals, strict=True):
                 _look(state, integral, cycle.threshold, cycle.after)
-        require_finite(integrals)
+        for integral in integrals:
+            require_finite(integral)
         return np.array(states)[:, -2:]
 
-    runs = parallel(run, blocks(0, sampling.paths), sampling.threads)
-    half, whole = np.concatenate(runs, axis=2)
+    runs = parallel(run, sampling, 3 * (1 + tuning.SAMPLED.cycles) * after)
+    half, whole = np.concatenate(list(runs), axis=2)
     factor = bias_over_change(registry.scheme(scene, sampling.scheme).weak_order(scene))
     # The mean is a ratio of sums over independent paths; its error is that of the linearised ratio.
     parts = _deviations(*whole) - _deviations(*half)

@@ -4,10 +4,10 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from nonsmooth.paths.ensembles import coupled, parallel, require_finite
+from nonsmooth.paths.ensembles import coupled, require_finite
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
-from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.moments import bias_over_change
+from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
@@ -61,6 +61,8 @@ def first_passage_counts(
         for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), sampling.step)
     ]
 
+    march(grid[0][1], new_panel(scene, sampling.seed, 0, sampling.precision), 0, 0, *levels)
+
     def run(job):
         block, lanes = job
         panel = new_panel(scene, sampling.seed, block, sampling.precision)
@@ -68,11 +70,10 @@ def first_passage_counts(
         for steps, s in grid:
             left.append(march(s, panel, left[-1], steps, *levels))
         # A path that diverges never crosses.
-        require_finite([panel.total[TOTAL_DELTA, : left[-1]]])
+        require_finite(panel.total[TOTAL_DELTA, : left[-1]])
         return -np.diff(left)
 
-    counts = parallel(run, blocks(sampling.first_path, sampling.paths), sampling.threads)
-    return np.asarray(sum(counts))
+    return np.asarray(sum(parallel(run, sampling, sum(steps for steps, _ in grid))))
 
 
 def first_passage_bias(

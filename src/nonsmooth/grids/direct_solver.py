@@ -10,16 +10,19 @@ from sympy import Symbol
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.interruption import interruptible
 from nonsmooth.scenes.scene import Scene
 
 
 def factorise(matrix: sp.sparray) -> spla.SuperLU:
     """Sparse LU of a matrix whose pattern is symmetric and whose diagonal is not small."""
-    return spla.splu(
-        matrix.tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=1e-3,
-        options={"SymmetricMode": True},
+    return interruptible(
+        lambda: spla.splu(
+            matrix.tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=1e-3,
+            options={"SymmetricMode": True},
+        )
     )
 
 

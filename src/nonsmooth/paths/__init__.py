@@ -12,6 +12,8 @@ the step and with half of it on the same noise.
 - `moments.moments`, `moments.step_bias`: mean and variance of int g, and the bias of the step
 - `resolution`: how many paths and how long a step a tolerance takes
 - `time_loop.march`: the loop over time steps
+- `parallel.parallel`: blocks of paths on several threads, which Ctrl-C stops
+- `cost`: what a simulation would cost; what nobody can wait for is refused
 - `time_grids`, `control_variate`: output times; a variable of known mean that reduces the
   standard error
 - `schemes` holds the time-stepping schemes, `kernels` what they are built from

@@ -1,8 +1,6 @@
 """Ensembles of paths: blocks are simulated in parallel and their results added in order."""
 
-import os
-from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +8,9 @@ from numpy.typing import ArrayLike
 
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.control_variate import poisson_slope
+from nonsmooth.paths.cost import require_memory
 from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, new_panel
-from nonsmooth.paths.kernels.random_numbers import blocks
+from nonsmooth.paths.parallel import kept_at_once, parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
@@ -20,12 +19,6 @@ from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 _EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
-
-
-def parallel(work: Callable, jobs: Iterable, threads: int | None = None) -> list:
-    """Map `work` over `jobs` on `threads` threads (default: all cores); results in order."""
-    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-        return list(pool.map(work, jobs))
 
 
 def gram(
@@ -64,12 +57,13 @@ def gram(
             return vector @ vector.T
 
     grid = [(parts * steps, h / parts) for steps, h in equal_steps(times, sampling.step)]
-    return sum(over_blocks(scene, grid, sampling, products, control))
+    require_memory(25 * len(grid) * kept_at_once(sampling))
+    return np.asarray(sum(over_blocks(scene, grid, sampling, products, control)))
 
 
 def over_blocks(
     scene: Scene, grid: list, sampling: Sampling, reduce: Callable, control: bool = True
-) -> list:
+) -> Iterator[np.ndarray]:
     """Simulate every block of paths and collect results at the output times.
 
     Parameters
@@ -85,21 +79,26 @@ def over_blocks(
     control : bool
         Whether to run the control variate, where there is one.
 
-    Returns
-    -------
-    list of numpy.ndarray
-        One per block; the first axis is the output time.
+    Yields
+    ------
+    numpy.ndarray
+        One per block, in their order; the first axis is the output time.
 
     Raises
     ------
     SceneError
         If a parameter is out of range or a path diverges.
+    ToleranceError
+        If the simulation would take too long.
     """
     slope = poisson_slope(scene) if control else None
     coefficients = {
         h: registry.coefficients(scene, sampling.scheme, h, sampling.precision, slope)
         for h in {h for _, h in grid}
     }
+
+    empty = new_panel(scene, sampling.seed, 0, sampling.precision)
+    march(coefficients[grid[0][1]], empty, 0, 0, *_EVERYWHERE)
 
     def run(job):
         block, count = job
@@ -110,9 +109,9 @@ def over_blocks(
             kept.append(reduce(panel, count))
         return np.array(kept)
 
-    results = parallel(run, blocks(sampling.first_path, sampling.paths), sampling.threads)
-    require_finite(results)
-    return results
+    for result in parallel(run, sampling, sum(steps for steps, _ in grid)):
+        require_finite(result)
+        yield result
 
 
 def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
@@ -125,14 +124,18 @@ def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
     """
     rows = [row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in scene.state]
     double = replace(sampling, precision="float64")
+    require_memory(2 * (len(rows) + 1) * (np.size(times) + 1) * sampling.paths)
 
     def state(panel, count):
         return np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]])
 
-    kept = over_blocks(scene, equal_steps(times, sampling.step), double, state, control=False)
+    kept = list(over_blocks(scene, equal_steps(times, sampling.step), double, state, control=False))
     start = state(new_panel(scene, sampling.seed, 0, "float64"), 1)
     return np.concatenate(
-        [np.broadcast_to(start, (1, len(start), sampling.paths)), np.concatenate(kept, axis=2)]
+        [
+            np.broadcast_to(start, (1, len(start), sampling.paths)),
+            np.concatenate(list(kept), axis=2),
+        ]
     )
 
 
@@ -156,8 +159,9 @@ def integrals_at(
     def totals(panel, count):
         return panel.total[:, :count].copy()
 
+    require_memory(6 * np.size(times) * sampling.paths)
     kept = over_blocks(scene, equal_steps(times, sampling.step), sampling, totals, control)
-    return np.concatenate(kept, axis=2)
+    return np.concatenate(list(kept), axis=2)
 
 
 def coupled(
@@ -194,6 +198,11 @@ def coupled(
         for _, h in grid
     ]
 
+    empty = new_panel(scene, sampling.seed, 0, precision)
+    fine, coarse = pairs[0]
+    given = registry.on_given_increments(coarse)
+    march_pair(fine, given, empty, empty, 0, 0, *levels, 0.0, np.empty((2, 0)))
+
     def run(job):
         block, count = job
         panel, other = (new_panel(scene, sampling.seed, block, precision) for _ in range(2))
@@ -210,19 +219,23 @@ def coupled(
             products[k] = vector @ vector.T
         return products, passage
 
-    results = parallel(run, blocks(0, sampling.paths), sampling.threads)
-    require_finite([change for change, _ in results])
-    return sum(change for change, _ in results), np.hstack([passage for _, passage in results])
+    require_memory(4 * sampling.paths)
+    total, passages = np.zeros((len(grid), 4, 4)), []
+    for change, passage in parallel(run, sampling, 3 * sum(steps for steps, _ in grid)):
+        require_finite(change)
+        total += change
+        passages.append(passage)
+    return total, np.hstack(passages)
 
 
-def require_finite(results: Iterable) -> None:
-    """Refuse results that are not finite, because paths have diverged.
+def require_finite(result: np.ndarray) -> None:
+    """Refuse a result that is not finite, because paths have diverged.
 
     Raises
     ------
     SceneError
     """
-    if not all(np.all(np.isfinite(result)) for result in results):
+    if not np.all(np.isfinite(result)):
         raise SceneError(
             "the simulation diverged: the drift is not confining or too steep for the step; "
             "mend the potentials or choose a smaller step"

@@ -88,8 +88,9 @@ def simulate(
     SceneError
         If an argument is out of range, or a path diverges.
     ToleranceError
-        If the step is so long that halving it does not measure its bias, or `tol` would take
-        more than hours; the message has one that does not.
+        If the step is so long that halving it does not measure its bias; if `tol` would take more
+        than hours, and the message has one that does not; if a given step would take more than
+        `paths.tuning.COST.longest_run`.
     """
     require_random(scene)
     at = _output_times(horizon, times)
@@ -103,8 +104,8 @@ def simulate(
     if step is None:
         share = (1 - tuning.MONTE_CARLO.spread_share) * tol
         step = choose_step(scene, at[-1:], share, seed, threads, scheme)
-    if paths is None:
-        require_possible(count, at[-1] / step, "the variance of int g is sampled", tol)
+        if paths is None:
+            require_possible(count, at[-1] / step, "the variance of int g is sampled", tol)
     sampling = Sampling(step, count, seed, threads=threads, scheme=scheme, precision=precision)
     data = (_paths if keep == "paths" else _statistics)(scene, at, sampling)
     return data.assign_attrs(step=step, paths=count)

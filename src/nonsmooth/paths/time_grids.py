@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.paths import tuning
 
 
@@ -36,12 +37,22 @@ def equal_steps(times: ArrayLike, step: float) -> list[tuple[int, float]]:
     -------
     list of (int, float)
         Number of steps and their length, for each output time.
+
+    Raises
+    ------
+    ToleranceError
+        If there are more steps than a computer can count exactly.
     """
     times = np.asarray(times, dtype=float)
     spans = np.diff(times, prepend=0.0)
     longest = np.minimum(step, np.maximum(times / tuning.TIME_GRID.first_steps, 1e-300))
     if not np.all(spans > 0):
         raise ValueError("output times must be positive and increase")
+    if not times[-1] / step <= tuning.COST.most_steps:
+        raise ToleranceError(
+            f"steps of {step:.3g} up to the time {times[-1]:.3g} are {times[-1] / step:.0e}, more "
+            "than can be simulated; choose a longer step or a shorter time"
+        )
     counts = np.maximum(np.ceil(spans / longest - 1e-9).astype(int), 1)
     # Steps that differ by rounding only become the same number, so that they share coefficients.
     return [(int(k), float(f"{span / k:.12g}")) for k, span in zip(counts, spans, strict=True)]

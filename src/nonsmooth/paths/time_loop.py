@@ -1,13 +1,21 @@
 """The loop over time steps, one for all schemes and scenes.
 
 It advances the paths of one panel (see `kernels.panel`). When the loop is compiled, the type of the
-coefficients it is given decides which scheme's `flow` and `kick` are called in it.
+coefficients it is given decides which scheme's `flow` and `kick` are called in it. It runs in
+pieces, between which its thread can be stopped. This does not change any bit. Before threads run
+it, the main thread calls it once with no paths, so that it is compiled where Ctrl-C can interrupt
+that.
 """
+
+import time
+from collections.abc import Iterator
+from typing import Any
 
 import numba
 import numpy as np
 from numba.extending import intrinsic, overload
 
+from nonsmooth.paths import tuning
 from nonsmooth.paths.kernels.compilation import inlined, kernel
 from nonsmooth.paths.kernels.panel import (
     BASE,
@@ -16,6 +24,7 @@ from nonsmooth.paths.kernels.panel import (
     FLUSH,
     ROWS,
     WIDTH,
+    Panel,
     flush,
     follow_extremes,
     observe,
@@ -23,6 +32,7 @@ from nonsmooth.paths.kernels.panel import (
 )
 from nonsmooth.paths.kernels.random_numbers import normals
 from nonsmooth.paths.kernels.vector_math import fma, like
+from nonsmooth.paths.parallel import count
 from nonsmooth.paths.schemes import registry
 
 
@@ -64,8 +74,7 @@ def _of_known_shape(panel):
     )
 
 
-@kernel
-def march(s, panel, lanes, steps, lower, upper):
+def march(s: Any, panel: Panel, lanes: int, steps: int, lower: float, upper: float) -> int:
     """Advance the paths of a panel; drop those whose int g has reached one of the levels.
 
     Parameters
@@ -85,9 +94,32 @@ def march(s, panel, lanes, steps, lower, upper):
     int
         Number of paths left, in the first lanes.
     """
+    for first, last in _pieces(steps + 1):
+        lanes = _march(s, panel, lanes, first, last, steps, lower, upper)
+        count(last - first)
+    return lanes
+
+
+def _pieces(steps: int) -> Iterator[tuple[int, int]]:
+    """Divide the steps of a loop into pieces that last long enough for Python not to matter.
+
+    Their lengths are multiples of `FLUSH`, so that the division changes no bit.
+    """
+    first, length = 0, FLUSH
+    while first < steps:
+        began = time.perf_counter()
+        yield first, min(first + length, steps)
+        first += length
+        if time.perf_counter() - began < tuning.INTERRUPTION.piece:
+            length *= 2
+
+
+@kernel
+def _march(s, panel, lanes, first, last, steps, lower, upper):
+    """Advance the paths of a panel by the steps from `first` up to `last`."""
     words, data, total = _of_known_shape(panel)
     normal = 2
-    for k in range(steps + 1):
+    for k in range(first, last):
         _flow(s, data, k == 0, k == steps, lanes)
         if k == steps:
             observe(data, lanes)  # what the last flow has added to int g
@@ -108,8 +140,18 @@ def march(s, panel, lanes, steps, lower, upper):
     return lanes
 
 
-@kernel
-def march_pair(fine, coarse, panel, other, lanes, steps, lower, upper, began, passage):
+def march_pair(
+    fine: Any,
+    coarse: Any,
+    panel: Panel,
+    other: Panel,
+    lanes: int,
+    steps: int,
+    lower: float,
+    upper: float,
+    began: float,
+    passage: np.ndarray,
+) -> None:
     """Advance two panels on the same noise, the second with steps twice as long.
 
     Parameters
@@ -131,11 +173,23 @@ def march_pair(fine, coarse, panel, other, lanes, steps, lower, upper, began, pa
         Times at which int g first reaches one of the levels, of the fine and of the coarse paths,
         interpolated within a step; inf before.
     """
+    for first, last in _pieces(2 * steps + 1):
+        _march_pair(
+            fine, coarse, panel, other, lanes, first, last, steps, lower, upper, began, passage
+        )
+        count(last - first)
+
+
+@kernel
+def _march_pair(
+    fine, coarse, panel, other, lanes, first, last, steps, lower, upper, began, passage
+):
+    """Advance two panels by the fine steps from `first` up to `last`."""
     words, data, total = _of_known_shape(panel)
     _, joined, other_total = _of_known_shape(other)
     a, b, c, d = fine.transition
     e, f, g = fine.factor
-    for k in range(2 * steps + 1):  # counts the fine steps
+    for k in range(first, last):  # counts the fine steps
         odd = k % 2 == 1
         now = began + (k // 2) * float(coarse.step)
         _flow(fine, data, k == 0, k == 2 * steps, lanes)

@@ -95,3 +95,32 @@ class StableStep:
 
 
 STABLE_STEP = StableStep()
+
+
+@dataclass(frozen=True)
+class Cost:
+    """How long a simulation takes, to an order of magnitude, and how long is too long."""
+
+    # chosen: hours; a run that takes longer should be several runs whose results are kept
+    longest_run: float = 100.0
+    # fitted: seconds of one step of a block with hardly any paths, and of one step of one path more
+    # in single precision, both in the fastest scenes
+    block_step: float = 5e-8
+    path_step: float = 1e-9
+    # chosen: largest number of steps of a path, beyond which their count is not exact
+    most_steps: float = 1e15
+
+
+COST = Cost()
+
+
+@dataclass(frozen=True)
+class Interruption:
+    """How soon a simulation notices that it is to stop."""
+
+    # chosen: seconds after which the time loop looks up from its work, or twice as many
+    piece: float = 0.1
+    look: float = 0.1  # chosen: seconds after which the bar is drawn anew
+
+
+INTERRUPTION = Interruption()

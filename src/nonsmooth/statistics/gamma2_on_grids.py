@@ -21,6 +21,7 @@ from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.mesh.box import narrowed
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, points, solver
+from nonsmooth.progress import counter
 from nonsmooth.refine import Refined, until_agreement
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x, y
@@ -194,14 +195,16 @@ def _enlarge(combination, error, tol, largest, vanishes):
     There is none if nothing affordable is left, or gamma^2 is 0.
     """
     left = tuning.GAMMA2_ON_GRIDS.work * largest
-    while not (error(combination) <= tol * combination.value or vanishes(combination)):
-        try:
-            cost = combination.refine(min(largest, left))
-        except ToleranceError:  # a finer grid on which the iteration does not converge
-            return
-        left -= cost
-        if not cost:
-            return
+    with counter("grids") as advance:
+        while not (error(combination) <= tol * combination.value or vanishes(combination)):
+            try:
+                cost = combination.refine(min(largest, left))
+            except ToleranceError:  # a finer grid on which the iteration does not converge
+                return
+            left -= cost
+            if not cost:
+                return
+            advance(1)
 
 
 def _size_of_terms(scene, grid, accuracy):
