@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 import sympy
 
+from nonsmooth.errors import SceneError
 from nonsmooth.grids.elements import Axis
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
@@ -34,10 +35,23 @@ def evaluate(
     Returns
     -------
     numpy.ndarray, shape (number of grid points,)
+
+    Raises
+    ------
+    SceneError
+        If the formula is not finite somewhere.
     """
     where = [(points or {}).get(symbol, axis.nodes) for symbol, axis in axes.items()]
     grid = np.meshgrid(*where, indexing="ij")
-    return vectorised(expression, tuple(axes))(*grid).ravel()
+    with np.errstate(all="ignore"):
+        values = vectorised(expression, tuple(axes))(*grid).ravel()
+    if not np.all(np.isfinite(values)):
+        at = [float(part.ravel()[np.argmin(np.isfinite(values))]) for part in grid]
+        place = ", ".join(f"{symbol} = {value:.3g}" for symbol, value in zip(axes, at, strict=True))
+        raise SceneError(
+            f"a formula of the scene is not finite at {place}; change the potential, the noise or g"
+        )
+    return values
 
 
 def start_row(scene: Scene, axes: Mapping[sympy.Symbol, Axis], side: int = 1) -> np.ndarray:

@@ -21,7 +21,7 @@ from nonsmooth.checks import (
     require_positive,
 )
 from nonsmooth.errors import AssumptionWarning, SceneError, quoted
-from nonsmooth.scenes import noises, symbols, tuning
+from nonsmooth.scenes import noises, regularity, symbols, tuning
 from nonsmooth.scenes.formulas import ODD, parity, parse, require_slope, vectorised
 from nonsmooth.scenes.magnitudes import require_moderate
 from nonsmooth.scenes.models.model import Model
@@ -94,7 +94,7 @@ class Scene:
                 f"{self.noise.title} does not have; use {', '.join(map(str, self.variables))}"
             )
         if not self.observes_penalty_force:
-            require_moderate("g", self.observable, self.observable_expression, self.variables)
+            self._check_observable()
 
     def _check_model_and_noise(self):
         # a known model is stored by its name, so that scenes made either way are equal
@@ -132,6 +132,16 @@ class Scene:
                 f"at {start['x']}; start inside or choose a finite n"
             )
         self._set("start", start)
+
+    def _check_observable(self):
+        wall = self.mechanics.wall if math.isinf(self.n) else math.inf
+        fault = regularity.fault(self.observable_expression, wall)
+        if fault:
+            raise SceneError(
+                f"g = {quoted(self.observable)} {fault}; choose one that is real, finite and "
+                "varies less"
+            )
+        require_moderate("g", self.observable, self.observable_expression, self.variables)
 
     def _set(self, name, value):
         object.__setattr__(self, name, value)

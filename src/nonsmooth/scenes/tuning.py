@@ -61,7 +61,33 @@ class Near:
     sizes: tuple[float, float] = (1e-15, 1e15)
 
 
+@dataclass(frozen=True)
+class Regularity:
+    """Where formulas are looked at for poles, and for more oscillations than can be resolved."""
+
+    # chosen: values of a variable, a few standard deviations, that are looked at closely, how far
+    # it is looked at roughly, and the number of values
+    near: float = 5.0
+    far: float = 1e3
+    points: int = 4001
+    others: tuple[float, ...] = (0.0, 0.37)  # chosen: values of the other variables meanwhile
+    halvings: int = 80  # derived: after which an interval is as short as rounding allows
+    # derived: a function that touches zero is as small as this there, relative to its size, because
+    # the place is known to the root of the rounding error
+    touching: float = 1e-14
+    # chosen: distances from a zero between which g must not grow like a pole; the last ones show a
+    # weak pole on a large background, the first ones a pole whose place is not known as well
+    distances: tuple[float, ...] = (1e-4, 1e-6, 1e-8, 1e-10)
+    # derived: the square of the distance to the power -1/2 has no integral; less for the error of
+    # the power
+    steepest: float = 0.45
+    apart: float = 1e-7  # chosen: of values whose difference is g's slope; keeps nine digits
+    # fitted: with more sweeps no method answers within minutes
+    sweeps: float = 1e4
+
+
 FAR_OUT = FarOut()
 FORMULA = Formula()
 NEAR = Near()
 LINEAR_DRIFT = LinearDrift()
+REGULARITY = Regularity()
