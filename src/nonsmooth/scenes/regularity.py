@@ -86,6 +86,8 @@ def _zeros(f: Callable, reach: np.ndarray) -> np.ndarray:
     """Find where a function is zero, changes its sign or touches zero."""
     values = f(reach)
     exact = reach[values == 0]
+    if len(exact) > len(reach) / 2:  # the line lies within the zeros, and other lines cross them
+        return reach[:0]
     changes = np.flatnonzero(values[:-1] * values[1:] < 0)
     left, right = reach[changes], reach[changes + 1]
     for _ in range(tuning.REGULARITY.halvings):

@@ -39,6 +39,7 @@ def test_poles_are_found(formula, place):
     [
         "y",
         "log(abs(y))",
+        "x + log(abs(y))",
         "abs(y)**(-0.4)",
         "1/(1 + y**2)",
         "y**3/(1 + y**2)",

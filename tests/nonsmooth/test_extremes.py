@@ -1,0 +1,107 @@
+"""Extreme questions are answered or refused soon: none runs on and on.
+
+Ten seconds of a processor are allowed. A timer that counts them stops what takes longer, wherever
+it is, as Ctrl-C would. Kernels are compiled before.
+"""
+
+import signal
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+
+SECONDS = 10.0
+
+
+@contextmanager
+def limited():
+    """Fail after so many seconds of a processor."""
+
+    def stop(number, frame):
+        pytest.fail(f"no answer after {SECONDS:g} s")
+
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def friction(**others):
+    """Dry friction, which has one variable with white noise."""
+    return ns.Scene("friction", **others)
+
+
+def obstacle(**others):
+    """Obstacles, with two variables or more."""
+    return ns.Scene("obstacle", **{"observable": "x"} | others)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled():
+    """Compile the kernels of the scenes below."""
+    for scene in (friction(), obstacle()):
+        ns.simulate(scene, 1.0, step=0.1, paths=10)
+        ns.simulate(scene, 1.0, step=0.1, paths=10, keep="paths")
+        ns.crossing_probability(scene, 1.0, [1.0], p=1, step=0.1, paths=10)
+
+
+REFUSED = {
+    "a pole": lambda: ns.asymptotic_variance(friction(observable="1/y")),
+    "a pole in the plane": lambda: ns.simulate(obstacle(observable="x/(y - 0.5)"), 1.0),
+    "poles without number": lambda: ns.variance(friction(observable="sin(y)/cos(y)"), [1.0]),
+    "oscillations": lambda: ns.asymptotic_variance(friction(observable="sin(1e9*y)")),
+    "oscillations of four variables": lambda: ns.asymptotic_variance(
+        obstacle(noise="hamiltonian", observable="x + sin(1e9*eta)")
+    ),
+    "short steps": lambda: ns.simulate(friction(), 10, step=1e-12),
+    "short steps of one path": lambda: ns.simulate(friction(), 10, step=1e-12, paths=1),
+    "short steps to a threshold": lambda: ns.crossing_probability(
+        friction(), 1.0, [1.0], p=10, step=1e-12
+    ),
+    "a far horizon": lambda: ns.simulate(obstacle(), 1e15),
+    "a horizon beyond counting": lambda: ns.simulate(obstacle(), 1e300, step=0.1, paths=10),
+    "a far threshold's horizon": lambda: ns.crossing_probability(
+        friction(), 1.0, [1e12], p=10, step=0.1, paths=1000
+    ),
+    "paths without number": lambda: ns.simulate(friction(), 1, step=0.01, paths=10**15),
+    "paths that no memory holds": lambda: ns.simulate(
+        friction(), 1, step=0.01, paths=10**9, keep="paths"
+    ),
+    "a late variance by paths": lambda: ns.variance(friction(), [1e12], method="monte_carlo"),
+    "a tolerance beyond paths": lambda: ns.simulate(friction(), 1, tol=1e-9),
+    "kicks of a steep potential": lambda: ns.simulate(
+        friction(potential="sin(1e9*x) + x**2", observable="x"), 1.0, paths=1000
+    ),
+}
+
+
+@pytest.mark.parametrize("call", REFUSED.values(), ids=REFUSED.keys())
+def test_what_nobody_can_wait_for_is_refused(call):
+    """In one line, by an error that is meant for the user."""
+    with limited(), pytest.raises(ns.NonsmoothError) as refused:
+        call()
+    assert "\n" not in str(refused.value)
+
+
+ANSWERED = {
+    "hardly any damping": lambda: ns.asymptotic_variance(friction(damping=1e-12)).value,
+    "a late variance": lambda: ns.variance(friction(), [1e12])["v"].values,
+    "a pole that can be integrated": lambda: (
+        ns.asymptotic_variance(friction(observable="log(abs(y))")).value
+    ),
+    "a stiff penalty": lambda: (
+        ns.simulate(obstacle(n=1e12), 1.0, paths=1000, step=0.01)["variance"].values
+    ),
+}
+
+
+@pytest.mark.parametrize("call", ANSWERED.values(), ids=ANSWERED.keys())
+def test_what_can_be_answered_is(call):
+    """By finite numbers."""
+    with limited():
+        assert np.all(np.isfinite(call()))
