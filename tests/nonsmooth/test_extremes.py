@@ -59,7 +59,10 @@ REFUSED = {
         obstacle(noise="hamiltonian", observable="x + sin(1e9*eta)")
     ),
     "short steps": lambda: ns.simulate(friction(), 10, step=1e-12),
-    "short steps of one path": lambda: ns.simulate(friction(), 10, step=1e-12, paths=1),
+    "short steps of one path": lambda: ns.simulate(
+        friction(), 10, step=1e-12, paths=1, keep="paths"
+    ),
+    "moments of one path": lambda: ns.simulate(friction(), 1e6, step=0.01, paths=1),
     "short steps to a threshold": lambda: ns.crossing_probability(
         friction(), 1.0, [1.0], p=10, step=1e-12
     ),

@@ -17,13 +17,14 @@ import warnings
 warnings.simplefilter("ignore")
 import nonsmooth as ns
 scene = ns.Scene("obstacle", observable="x")
-ns.simulate(scene, 1, step=0.1, paths=1, precision="float32")  # kernels are compiled
+for keep in ("moments", "paths"):  # kernels are compiled
+    ns.simulate(scene, 1, step=0.1, paths=10, keep=keep)
 print("begun", flush=True)
 {call}
 """
 CALLS = {
     "many short blocks": "ns.simulate(scene, 1e4, step=0.01, paths=10**6)",
-    "one long path": "ns.simulate(scene, 1e7, step=0.01, paths=1)",
+    "one long path": "ns.simulate(scene, 1e7, step=0.01, paths=1, times=[1e7], keep='paths')",
     "levels of grids": "ns.asymptotic_variance(scene, tol=1e-9, method='deterministic')",
 }
 

@@ -9,7 +9,6 @@ from concurrent.futures import Future
 from contextlib import suppress
 from typing import Any
 
-from nonsmooth.checks import require_count
 from nonsmooth.paths import cost, tuning
 from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.sampling import Sampling
@@ -89,7 +88,6 @@ def parallel(
     ToleranceError
         If the simulation would take too long, see `cost.require_time`.
     """
-    require_count("threads", _threads(sampling))
     cost.require_time(steps, sampling)
     todo: queue.SimpleQueue = queue.SimpleQueue()
     run = _Run()

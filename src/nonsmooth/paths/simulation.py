@@ -101,6 +101,8 @@ def simulate(
     keep = require_choice("keep", keep, ("moments", "paths"))
     precision = require_choice("precision", precision, PRECISIONS)
     registry.scheme(scene, scheme)  # raises an error if it cannot simulate the scene
+    if keep == "moments" and count == 1:
+        raise SceneError("one path has no variance; choose more paths, or keep='paths'")
     if step is None:
         share = (1 - tuning.MONTE_CARLO.spread_share) * tol
         step = choose_step(scene, at[-1:], share, seed, threads, scheme)

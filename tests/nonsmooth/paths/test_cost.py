@@ -27,7 +27,7 @@ def test_hours_are_allowed():
     "arguments",
     [
         {"horizon": 10, "step": 1e-12},
-        {"horizon": 10, "step": 1e-12, "paths": 1},
+        {"horizon": 10, "step": 1e-12, "paths": 1, "keep": "paths"},
         {"horizon": 1e15},
         {"horizon": 1e15, "step": 0.1, "paths": 10},
         {"horizon": 1e300, "step": 0.1, "paths": 10},
