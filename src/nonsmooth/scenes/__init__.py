@@ -12,8 +12,8 @@ Nothing is solved in this package.
   contract `Noise`
 - `penalties.Penalty`: the Moreau-Yosida regularisations, `ABSOLUTE_VALUE` and `BARRIER`
 - `formulas.parse`, `formulas.vectorised`: text to sympy, sympy to numpy; `formulas.compilable`
-- `magnitudes.require_moderate`: formulas of a size that double precision can compute with
-- `regularity.fault`: whether g is real, has no poles and can be resolved
+- `regularity.require_moderate`, `regularity.fault`: formulas of a size that double precision can
+  compute with; a g that is real, has no poles and can be resolved
 - `symbols`: the variables zeta, eta, y, x and the damping C_b
 - `thresholds.bounds`: the two levels of a threshold
 - `equations`: Table 2 of the paper with undefined functions for potentials and penalties

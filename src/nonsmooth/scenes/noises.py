@@ -14,7 +14,7 @@ from nonsmooth.checks import require_parameter
 from nonsmooth.errors import SceneError, quoted
 from nonsmooth.scenes import tuning
 from nonsmooth.scenes.formulas import parse, require_slope, vectorised
-from nonsmooth.scenes.magnitudes import require_moderate
+from nonsmooth.scenes.regularity import require_moderate
 from nonsmooth.scenes.symbols import eta, y, zeta
 
 

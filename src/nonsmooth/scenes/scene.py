@@ -23,10 +23,10 @@ from nonsmooth.checks import (
 from nonsmooth.errors import AssumptionWarning, SceneError, quoted
 from nonsmooth.scenes import noises, regularity, symbols, tuning
 from nonsmooth.scenes.formulas import ODD, parity, parse, require_slope, vectorised
-from nonsmooth.scenes.magnitudes import require_moderate
 from nonsmooth.scenes.models.model import Model
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.regularity import require_moderate
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x
 
 
