@@ -9,8 +9,8 @@ from sympy import Symbol
 
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
+from nonsmooth.grids.interruption import interruptible
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.interruption import interruptible
 from nonsmooth.scenes.scene import Scene
 
 

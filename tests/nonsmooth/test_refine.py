@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from nonsmooth import progress
+from nonsmooth import refine
 
 
 class Screen(io.StringIO):
@@ -19,7 +19,7 @@ class Screen(io.StringIO):
 def drawn(monkeypatch, stream, context):
     """Return what a bar writes to a standard error while it advances three times."""
     monkeypatch.setattr(sys, "stderr", stream)
-    monkeypatch.setattr(progress, "DELAY", 0.0)
+    monkeypatch.setattr(refine, "DELAY", 0.0)
     with context() as advance:
         for _ in range(3):
             advance(1)
@@ -28,15 +28,15 @@ def drawn(monkeypatch, stream, context):
 
 def test_logs_have_no_bars(monkeypatch):
     """Nothing is written to a file."""
-    assert drawn(monkeypatch, io.StringIO(), lambda: progress.bar("simulating", 3)) == ""
+    assert drawn(monkeypatch, io.StringIO(), lambda: refine.bar("simulating", 3)) == ""
 
 
 @pytest.mark.parametrize(
     ("context", "expected"),
     [
-        (lambda: progress.bar("simulating", 3), "simulating:   0%"),
-        (lambda: progress.counter("levels", 9), "levels: 0 of at most 9"),
-        (lambda: progress.counter("grids"), "grids: 0"),
+        (lambda: refine.bar("simulating", 3), "simulating:   0%"),
+        (lambda: refine.counter("levels", 9), "levels: 0 of at most 9"),
+        (lambda: refine.counter("grids"), "grids: 0"),
     ],
 )
 def test_terminals_have(monkeypatch, context, expected):
@@ -48,6 +48,6 @@ def test_short_computations_have_no_bars(monkeypatch):
     """What is over within the delay shows nothing, even on a terminal."""
     stream = Screen()
     monkeypatch.setattr(sys, "stderr", stream)
-    with progress.bar("simulating", 3) as advance:
+    with refine.bar("simulating", 3) as advance:
         advance(3)
     assert "simulating" not in stream.getvalue()
