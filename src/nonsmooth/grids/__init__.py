@@ -12,7 +12,6 @@ more by an iteration. Grids are refined until the result settles.
 - `solver.PoissonSolver`: what a solver must do; `direct_solver.DirectSolver` and
   `alternating_solver.AlternatingSolver` do it
 - `tensor_grid.Grid`, `tensor_grid.fitted`, `tensor_grid.solver`: resolution, box and solver
-- `interruption.interruptible`: factorisations that Ctrl-C need not wait for
 - `uniform_refinement.refined`: grids of two variables, both refined until two levels agree
 - `combination_technique.Combination`: grids of more variables, each refined as far as it matters
 - `potential_wells.starts`: one starting point in each well that paths rarely leave

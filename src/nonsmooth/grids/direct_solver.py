@@ -1,6 +1,8 @@
 """The Poisson equation on tensor grids with up to two variables, by sparse factorisation."""
 
+import threading
 from collections.abc import Mapping
+from concurrent.futures import Future
 
 import numpy as np
 import scipy.sparse as sp
@@ -9,14 +11,13 @@ from sympy import Symbol
 
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
-from nonsmooth.grids.interruption import interruptible
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.scenes.scene import Scene
 
 
 def factorise(matrix: sp.sparray) -> spla.SuperLU:
     """Sparse LU of a matrix whose pattern is symmetric and whose diagonal is not small."""
-    return interruptible(
+    return _interruptible(
         lambda: spla.splu(
             matrix.tocsc(),
             permc_spec="MMD_AT_PLUS_A",
@@ -24,6 +25,26 @@ def factorise(matrix: sp.sparray) -> spla.SuperLU:
             options={"SymmetricMode": True},
         )
     )
+
+
+def _interruptible(call):
+    """Call a function in another thread and wait for it, so that Ctrl-C need not.
+
+    Python looks for Ctrl-C between two of its own instructions, and not within a call of a
+    compiled library. After Ctrl-C the call goes on until it is done or the program ends, and its
+    result is dropped.
+    The call must release Python's global lock, as the sparse factorisation of scipy does.
+    """
+    result: Future = Future()
+
+    def run():
+        try:
+            result.set_result(call())
+        except BaseException as error:
+            result.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()
+    return result.result()
 
 
 class _Factors:
