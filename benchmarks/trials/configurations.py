@@ -1,12 +1,13 @@
 """Bad configurations: each is refused in a line that says what is wrong, and none runs.
 
-Hundreds of mutations of config.yaml and of config/smoke.yaml over it are generated from the schema.
-With no argument each is checked in this process, which takes a minute. With ``--command N`` every
+Thousands of mutations of config.yaml and of config/smoke.yaml over it are generated from the schema.
+With no argument each is checked in this process, which takes minutes. With ``--command N`` every
 N-th is put into a copy of the repository and given to ``snakemake --dry-run`` as a user would.
 
 Prints the counts and what is bad: accepted though it cannot run, refused though it is legal, a line
 that does not name file and key, more than two lines, more than four seconds, a traceback, files
-written. Exits with status 1 if anything is bad.
+written. Exits with status 1 if anything is bad. On a busy machine the seconds say little; those of
+the processor are printed, too.
 """
 
 import argparse
