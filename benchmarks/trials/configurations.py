@@ -1,6 +1,6 @@
 """Bad configurations: each is refused in a line that says what is wrong, and none runs.
 
-Thousands of mutations of config.yaml and of config/smoke.yaml over it are generated from the schema.
+Thousands of mutations of config.yaml, and of config/smoke.yaml over it, are made from the schema.
 With no argument each is checked in this process, which takes minutes. With ``--command N`` every
 N-th is put into a copy of the repository and given to ``snakemake --dry-run`` as a user would.
 
