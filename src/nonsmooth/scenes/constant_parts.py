@@ -33,6 +33,7 @@ _DOUBLE: dict[Callable, Callable[..., float]] = {
     sympy.tanh: math.tanh,
 }
 _NOT_ZERO = (sympy.Mul, sympy.Pow, sympy.exp)  # their values are not 0 if no argument is
+_MAY_BE_COMPLEX = (sympy.Pow, sympy.log)  # at real arguments
 _INFINITE = (sympy.zoo, sympy.nan, sympy.oo, -sympy.oo)
 NOT_REAL = "it is not real; write arithmetic of real numbers"
 
@@ -54,7 +55,7 @@ def in_range(value: float) -> float:
     return value
 
 
-def require_small_numbers(exponent: sympy.Expr) -> None:
+def require_small_numbers(exponent: sympy.Expr, base: sympy.Expr | None = None) -> None:
     """Check that no number in an exponent is so large that powers explode.
 
     Raises
@@ -62,11 +63,12 @@ def require_small_numbers(exponent: sympy.Expr) -> None:
     ExpressionError
         If one is.
     """
-    largest = tuning.FORMULA.exponent
+    sums = base is not None and base.has(sympy.Add)
+    largest = tuning.FORMULA.exponent_of_sums if sums else tuning.FORMULA.exponent
     for number in exponent.atoms(sympy.Number):
         size = max(abs(number.p), number.q) if number.is_Rational else abs(number)
         if not size <= largest:
-            raise ExpressionError(f"an exponent in it is beyond {largest}; use smaller powers")
+            raise ExpressionError(f"an exponent is beyond {largest}; use smaller powers")
 
 
 class ConstantParts:
@@ -110,10 +112,12 @@ class ConstantParts:
         if expression in _INFINITE:
             raise ExpressionError("it is infinite everywhere; write arithmetic of real numbers")
         head = expression.func
-        if head not in _DOUBLE or expression.is_extended_real is False:
+        if head not in _DOUBLE or (
+            head in _MAY_BE_COMPLEX and expression.is_extended_real is False
+        ):
             raise ExpressionError(NOT_REAL)
         if head is sympy.Pow:
-            require_small_numbers(expression.exp)
+            require_small_numbers(expression.exp, expression.base)
         values = [self.value(part) for part in expression.args]
         return None if None in values else evaluated(head, values)
 

@@ -130,6 +130,7 @@ class _Reader:
         self._variables = {symbol.name: symbol for symbol in variables}
         self._constants = ConstantParts()
         self._operations = self._compared = 0
+        self._within = self._operations_within = 0  # arguments of max and min
 
     def expression(self, tree):
         return sympy.sympify(self._read(tree, 0))  # a number or an expression, never text
@@ -167,6 +168,12 @@ class _Reader:
         if self._operations > tuning.FORMULA.operations:
             raise ExpressionError(
                 f"it has more than {tuning.FORMULA.operations} operations; simplify it"
+            )
+        self._operations_within += self._within > 0
+        if self._operations_within > tuning.FORMULA.operations_compared:
+            raise ExpressionError(
+                "the arguments of its max and min have more than "
+                f"{tuning.FORMULA.operations_compared} operations; simplify them"
             )
 
     def _number(self, node):
@@ -213,7 +220,7 @@ class _Reader:
         elif number is not None and number < 0:
             raise ExpressionError("a negative number to a variable power is not real; use abs(...)")
         if isinstance(base, sympy.Expr) or isinstance(exponent, sympy.Expr):
-            require_small_numbers(sympy.sympify(exponent))
+            require_small_numbers(sympy.sympify(exponent), sympy.sympify(base))
 
     def _call(self, node, depth):
         name, count = node.func.id, len(node.args)
@@ -229,7 +236,9 @@ class _Reader:
             raise ExpressionError(
                 f"its max and min have more than {tuning.FORMULA.compared} arguments; simplify it"
             )
+        self._within += name in _COMPARED
         arguments = [self._read(argument, depth + 1) for argument in node.args]
+        self._within -= name in _COMPARED
         values = [self._double(argument) for argument in arguments]
         if None not in values:
             evaluated(FUNCTIONS[name], values)

@@ -42,12 +42,16 @@ class Formula:
     depth: int = 30  # measured: sympy descends some ten calls a level; Python allows 1000 in all
     # measured: max and min compare all their arguments with one another, 3 ms for each pair
     compared: int = 12
+    # measured: to compare them sympy asks for the signs of their differences, which takes up to
+    # 0.3 s here and may take minutes with 60
+    operations_compared: int = 20
     # chosen: the range of double precision, less some digits for sums and products
     largest: float = 1e300
     smallest: float = 1e-300
     # chosen: x**100 is beyond double precision at x = 1300; numbers to this power have at most
     # 30,000 digits, which sympy computes at once
     exponent: int = 100
+    exponent_of_sums: int = 10  # measured: sympy multiplies out powers when it looks for signs
 
 
 @dataclass(frozen=True)
