@@ -39,7 +39,7 @@ class Formula:
     # chosen: several times what a polynomial of degree four in four variables takes
     length: int = 2000
     operations: int = 200  # measured: such formulas take sympy up to 0.5 s
-    depth: int = 30  # measured: sympy descends some ten calls a level; Python allows 1000 in all
+    depth: int = 12  # measured: deeper formulas keep sympy busy with signs, some for minutes
     # measured: max and min compare all their arguments with one another, 3 ms for each pair
     compared: int = 12
     # measured: to compare them sympy asks for the signs of their differences, which takes up to
