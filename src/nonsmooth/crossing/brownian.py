@@ -21,6 +21,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.scenes.thresholds import bounds
 
 _SIZES = 1e-75, 1e75  # the fourth power of what is between is in double precision
+_TIMES = 1e-300, 1e75  # levels further than some roots of T are cut, so that T may be smaller
 
 
 def brownian_crossing(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
@@ -164,7 +165,7 @@ class _Path:
     """Levels and horizon, broadcast and checked, and the terms of the two series."""
 
     def __init__(self, b, T, lower):
-        b, T = require_numbers("b", b, *_SIZES), require_numbers("T", T, *_SIZES)
+        b, T = require_numbers("b", b, *_SIZES), require_numbers("T", T, *_TIMES)
         lower = -b if lower is None else require_numbers("lower", lower, *_SIZES)
         try:
             b, lower, T = np.broadcast_arrays(b, lower, T)
