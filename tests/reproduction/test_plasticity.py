@@ -24,9 +24,9 @@ def test_the_deformation_is_the_displacement_less_the_elastic_part():
 
 def test_bad_parameters_are_refused():
     """Parameters that make no scene or no noise are refused in one line."""
-    with pytest.raises(SceneError, match="stiffness of the noise is -1.0; give a positive"):
+    with pytest.raises(SceneError, match=r"stiffness of the noise is -1\.0; give a positive"):
         yielding_oscillator(GROUND | {"stiffness": -1.0}, OSCILLATOR)
-    with pytest.raises(SceneError, match="damping is 0.0; give a positive"):
+    with pytest.raises(SceneError, match=r"damping is 0\.0; give a positive"):
         yielding_oscillator(GROUND, OSCILLATOR | {"damping": 0.0})
 
 
