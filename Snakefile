@@ -5,7 +5,7 @@ from pathlib import Path
 
 from reproduction.configuration.layers import Layers
 from reproduction.errors import ConfigError
-from workflow.checks import check
+from workflow.checks.configuration import check
 
 # config.yaml, then what the command line lays over it
 given = workflow.config_settings

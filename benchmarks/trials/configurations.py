@@ -26,7 +26,7 @@ from benchmarks.trials.mutations import CONFIG, ROOT, SMOKE, Mutation, mutations
 from reproduction.configuration.files import read
 from reproduction.configuration.layers import Layers
 from reproduction.errors import ConfigError
-from workflow.checks import check
+from workflow.checks.configuration import check
 
 LINES, SECONDS = 2, 4.0
 

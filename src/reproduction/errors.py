@@ -41,21 +41,26 @@ class CheckError(NonsmoothError):
     """Results that contradict each other."""
 
 
+def dotted(key: tuple) -> str:
+    """Spell a key as messages have it."""
+    return repr(".".join(map(str, key)))
+
+
 @contextmanager
-def configured_by(section: str) -> Iterator[None]:
-    """Name the section of the configuration in the errors of the body, which it causes.
+def configured_by(*key: str | int) -> Iterator[None]:
+    """Say which key of the configuration causes the errors of the body.
 
     Parameters
     ----------
-    section : str
-        Dotted key.
+    *key : str or int
+        Keys and positions, from the outermost to the innermost.
 
     Raises
     ------
-    NonsmoothError
-        That of the body, with the section in front of its message.
+    ConfigError
+        With the key in front of the message.
     """
     try:
         yield
     except NonsmoothError as error:
-        raise type(error)(f"{section}: {error}") from error
+        raise ConfigError(f"{dotted(key)}: {error}", key=key) from error

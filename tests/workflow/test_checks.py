@@ -11,13 +11,12 @@ from scipy.stats import binom
 
 from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.counting import crossing_estimate
-from nonsmooth.errors import SceneError
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins
 from nonsmooth.theory.ergodicity import Bound
 from reproduction.errata.record import Erratum, Evidence
-from reproduction.errors import CheckError
+from reproduction.errors import CheckError, ConfigError
 from support import ROOT
 
 TAU = np.array([0.1, 1.0, 10.0])
@@ -129,7 +128,7 @@ def test_a_value_that_the_paper_does_not_print_fails():
 
 def test_a_narrow_domain_names_its_key():
     """Table 4 with half_width = 0.01 is refused before it has a number."""
-    with pytest.raises(SceneError, match=r"convergence\.finite_difference: half_width = 0\.01"):
+    with pytest.raises(ConfigError, match=r"'convergence\.finite_difference': half_width = 0\.01"):
         scheme(PRINTED, 2.0, 100, 0.01, 1001, 0.05)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import jsonschema
 
-from reproduction.errors import ConfigError
+from reproduction.errors import ConfigError, dotted
 
 LARGEST = 1e300  # beyond, arithmetic overflows
 SHOWN = 80  # characters of a value in a message
@@ -56,11 +56,6 @@ def numbers(value: Any, key: tuple = ()) -> Iterator[tuple[tuple, int | float]]:
             yield from numbers(inner, (*key, part))
     elif isinstance(value, int | float):
         yield key, value
-
-
-def dotted(key: tuple) -> str:
-    """Spell a key as messages have it."""
-    return repr(".".join(map(str, key)))
 
 
 def shown(value: Any) -> str:

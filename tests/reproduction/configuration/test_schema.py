@@ -9,7 +9,7 @@ from reproduction.configuration.layers import Layers
 from reproduction.configuration.schema import validate
 from reproduction.errors import ConfigError
 from support import ROOT
-from workflow.checks import SCHEMA, check
+from workflow.checks.configuration import SCHEMA, check
 from workflow.experiment import label, shards
 
 CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())

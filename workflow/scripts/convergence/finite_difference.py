@@ -15,7 +15,7 @@ def paper_scheme(scene, n, horizon, half_width, nodes, time_step):
     xarray.Dataset
     """
     scene = Scene(**scene, n=n)
-    with configured_by("convergence.finite_difference"):
+    with configured_by("convergence", "finite_difference"):
         _, v, _, error = moments_with_error(scene, [horizon], half_width, nodes, time_step)
     return artifact.dataset(
         "v(0, T)/T by the paper's finite differences",

@@ -17,7 +17,7 @@ def paper_scheme(scene, first_time, horizon, points, half_width, nodes, time_ste
     """
     scene = Scene(**scene)
     tau = time_grids.logarithmic(first_time, horizon, points)
-    with configured_by("variance.finite_difference"):
+    with configured_by("variance", "finite_difference"):
         _, v, _, v_error = moments_with_error(scene, tau, half_width, nodes, time_step)
     return artifact.dataset(
         "Variance of the integrated observable by the paper's finite differences",

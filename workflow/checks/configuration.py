@@ -1,4 +1,4 @@
-"""Checks of the configuration: what cannot run is refused in one line before anything runs."""
+"""The whole configuration: what cannot run is refused in one line before anything runs."""
 
 from functools import cache
 from pathlib import Path
@@ -8,9 +8,9 @@ import yaml
 from reproduction.configuration.layers import Layers
 from reproduction.configuration.schema import validate
 from reproduction.errors import ConfigError
-from workflow.outputs import check_outputs
+from workflow.checks.outputs import check_outputs
 
-SCHEMA = Path(__file__).parent / "schemas" / "config.schema.yaml"
+SCHEMA = Path(__file__).parents[1] / "schemas" / "config.schema.yaml"
 
 
 def check(layers: Layers) -> None:
@@ -30,7 +30,7 @@ def check(layers: Layers) -> None:
         validate(config, _schema())
         check_outputs(config["outputs"])
         # sympy takes a second, which most answers need not wait for
-        from workflow.meaning import check_meaning
+        from workflow.checks.meaning import check_meaning
 
         check_meaning(config)
     except ConfigError as error:

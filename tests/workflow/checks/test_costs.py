@@ -7,7 +7,7 @@ import pytest
 from reproduction.configuration.files import read
 from reproduction.errors import ConfigError
 from support import ROOT
-from workflow.costs import GB, check_costs, costs
+from workflow.checks.costs import GB, check_costs, costs
 
 CONFIG = read(ROOT / "config.yaml")
 # seconds on one core, and megabytes of the largest job, of a run at the paper's sizes, by the

@@ -11,11 +11,11 @@ from math import ceil, isfinite
 
 import psutil
 
-from reproduction.configuration.schema import dotted, shown
-from reproduction.errors import ConfigError
+from reproduction.configuration.schema import shown
+from reproduction.errors import ConfigError, dotted
 from reproduction.plasticity import yielding_oscillator
 from reproduction.time_scales import contact_time
-from workflow.scenes import scene_of
+from workflow.checks.scenes import scene_of
 
 GB = 1e9
 # imports, compiled kernels and their arrays: benchmarks/tables and benchmarks/crossing

@@ -2,19 +2,18 @@
 
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
 
-from nonsmooth.errors import AssumptionWarning, NonsmoothError
+from nonsmooth.errors import AssumptionWarning
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.noises import NOISES, Hamiltonian, Langevin
 from nonsmooth.scenes.scene import Scene
-from reproduction.configuration.schema import dotted, shown
-from reproduction.errors import ConfigError
+from reproduction.configuration.schema import shown
+from reproduction.errors import ConfigError, configured_by, dotted
 from reproduction.plasticity import yielding_oscillator
-from workflow.costs import check_costs
+from workflow.checks.costs import check_costs
+from workflow.checks.scenes import scene_of
 from workflow.experiment import ergodic_scenes, finite
-from workflow.scenes import scene_of
 
 
 def check_meaning(config: dict) -> None:
@@ -55,26 +54,17 @@ def _refused(config, key, problem, *others):
     return ConfigError(f"{dotted(key)} = {value} {problem}", key=key, others=others)
 
 
-@contextmanager
-def _blamed(*key):
-    """Say which key an error is about."""
-    try:
-        yield
-    except NonsmoothError as error:
-        raise ConfigError(f"{dotted(key)}: {error}", key=key) from None
-
-
 def _scene(key, parameters):
     """Make a scene of a table of parameters, formula by formula, so that errors name theirs."""
     model, noise = parameters["model"], parameters["noise"]
-    with _blamed(*key, "noise"):
+    with configured_by(*key, "noise"):
         if isinstance(noise, dict):
             noise = (Hamiltonian if "H" in noise else Langevin)(**noise)
         else:
             noise = NOISES[noise]
-    with _blamed(*key, "potential"):
+    with configured_by(*key, "potential"):
         Scene(model, noise, potential=parameters["potential"]).potential_expression  # noqa: B018
-    with _blamed(*key, "observable"):
+    with configured_by(*key, "observable"):
         return scene_of(parameters)
 
 
@@ -95,20 +85,20 @@ def _check_scenes(config):
     for key, parameters in _scenes(config):
         _scene(key, parameters)
     for model, own in config["trajectories"]["models"].items():
-        with _blamed("trajectories", "models", model, "potential"):
+        with configured_by("trajectories", "models", model, "potential"):
             Scene(model, potential=own["potential"], damping=own["damping"])
-    with _blamed("plasticity", "oscillator", "potential"):
+    with configured_by("plasticity", "oscillator", "potential"):
         yielding_oscillator(config["plasticity"]["ground"], config["plasticity"]["oscillator"])
     theorems = config["theorems"]
     for k, v in enumerate(theorems["langevin"]):
-        with _blamed("theorems", "langevin", k):
+        with configured_by("theorems", "langevin", k):
             Langevin(v)
     for model, potentials in theorems["potentials"].items():
         for k, potential in enumerate(potentials):
-            with _blamed("theorems", "potentials", model, k):
+            with configured_by("theorems", "potentials", model, k):
                 Scene(model, potential=potential)
     for model, potential in config["speed_against_error"]["pathwise"]["models"].items():
-        with _blamed("speed_against_error", "pathwise", "models", model):
+        with configured_by("speed_against_error", "pathwise", "models", model):
             Scene(model, potential=potential)
 
 

@@ -5,10 +5,10 @@ import subprocess
 from functools import lru_cache
 from pathlib import Path
 
-from reproduction.configuration.schema import dotted, shown
-from reproduction.errors import ConfigError
+from reproduction.configuration.schema import shown
+from reproduction.errors import ConfigError, dotted
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 # what a repository holds besides its outputs; also where there is no git to ask
 SOURCES = {
     *("src", "workflow", "tests", "docs", "config", "examples", "benchmarks", "profiles"),
@@ -16,7 +16,7 @@ SOURCES = {
 }
 # folders of the results that belong to rules
 GENERATED = {"figures", "tables", "logs", "benchmarks"} | {
-    path.stem for path in Path(__file__).parent.glob("rules/*.smk")
+    path.stem for path in Path(__file__).parents[1].glob("rules/*.smk")
 }
 # of a name, and of a whole path, which names of artifacts and partial files lengthen
 LONGEST_NAME, LONGEST_PATH = 200, 3000

@@ -6,8 +6,8 @@ import pytest
 
 from benchmarks.trials.mutations import OUTPUTS
 from reproduction.errors import ConfigError
-from workflow import outputs
-from workflow.outputs import check_outputs
+from workflow.checks import outputs
+from workflow.checks.outputs import check_outputs
 
 USUAL = {"results": "results", "paper": "paper/paper.pdf"}
 
