@@ -12,7 +12,7 @@ from typing import Any
 from nonsmooth.paths import cost, tuning
 from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.refine import bar
+from nonsmooth.progress import bar
 
 _of_thread = threading.local()  # its attribute `run` is the `_Run` that a thread works for
 

@@ -21,7 +21,8 @@ from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.mesh.box import narrowed
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, points, solver
-from nonsmooth.refine import Refined, counter, until_agreement
+from nonsmooth.progress import counter
+from nonsmooth.refine import Refined, until_agreement
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x, y
 from nonsmooth.statistics import tuning

@@ -1,0 +1,53 @@
+"""Bars appear where somebody watches, and nowhere else."""
+
+import io
+import sys
+
+import pytest
+
+from nonsmooth import progress
+
+
+class Screen(io.StringIO):
+    """A terminal that keeps what it is sent."""
+
+    def isatty(self):
+        """Return that it is one."""
+        return True
+
+
+def drawn(monkeypatch, stream, context):
+    """Return what a bar writes to a standard error while it advances three times."""
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setattr(progress, "DELAY", 0.0)
+    with context() as advance:
+        for _ in range(3):
+            advance(1)
+    return stream.getvalue()
+
+
+def test_logs_have_no_bars(monkeypatch):
+    """Nothing is written to a file."""
+    assert drawn(monkeypatch, io.StringIO(), lambda: progress.bar("simulating", 3)) == ""
+
+
+@pytest.mark.parametrize(
+    ("context", "expected"),
+    [
+        (lambda: progress.bar("simulating", 3), "simulating:   0%"),
+        (lambda: progress.counter("levels", 9), "levels: 0 of at most 9"),
+        (lambda: progress.counter("grids"), "grids: 0"),
+    ],
+)
+def test_terminals_have(monkeypatch, context, expected):
+    """A terminal shows what is computed, and how much of it."""
+    assert expected in drawn(monkeypatch, Screen(), context)
+
+
+def test_short_computations_have_no_bars(monkeypatch):
+    """What is over within the delay shows nothing, even on a terminal."""
+    stream = Screen()
+    monkeypatch.setattr(sys, "stderr", stream)
+    with progress.bar("simulating", 3) as advance:
+        advance(3)
+    assert "simulating" not in stream.getvalue()
