@@ -1,53 +1,50 @@
-"""Bars appear where somebody watches, and nowhere else."""
+"""The loop that refines ends where it should, and says whether the error is small enough."""
 
-import io
-import sys
-
+import numpy as np
 import pytest
 
-from nonsmooth import refine
+from nonsmooth.errors import ToleranceError
+from nonsmooth.refine import until_agreement
 
 
-class Screen(io.StringIO):
-    """A terminal that keeps what it is sent."""
-
-    def isatty(self):
-        """Return that it is one."""
-        return True
-
-
-def drawn(monkeypatch, stream, context):
-    """Return what a bar writes to a standard error while it advances three times."""
-    monkeypatch.setattr(sys, "stderr", stream)
-    monkeypatch.setattr(refine, "DELAY", 0.0)
-    with context() as advance:
-        for _ in range(3):
-            advance(1)
-    return stream.getvalue()
+def halvings(levels, tol, hopeless=lambda value, error: False):
+    """Refine 2^-level, whose error is the change by the last level."""
+    return until_agreement(
+        levels,
+        lambda level: 2.0**-level,
+        lambda solutions: solutions[-2] - solutions[-1],
+        lambda value, error: error <= tol,
+        hopeless,
+    )
 
 
-def test_logs_have_no_bars(monkeypatch):
-    """Nothing is written to a file."""
-    assert drawn(monkeypatch, io.StringIO(), lambda: refine.bar("simulating", 3)) == ""
+def test_ends_at_the_first_level_that_is_good_enough():
+    """The change 1/2 - 1/4 is above the tolerance, 1/4 - 1/8 is at it."""
+    found = halvings(range(1, 9), tol=1 / 8)
+    assert (found.value, found.error, found.met) == (1 / 8, 1 / 8, True)
+    assert found.solutions == (1 / 2, 1 / 4, 1 / 8)
 
 
-@pytest.mark.parametrize(
-    ("context", "expected"),
-    [
-        (lambda: refine.bar("simulating", 3), "simulating:   0%"),
-        (lambda: refine.counter("levels", 9), "levels: 0 of at most 9"),
-        (lambda: refine.counter("grids"), "grids: 0"),
-    ],
-)
-def test_terminals_have(monkeypatch, context, expected):
-    """A terminal shows what is computed, and how much of it."""
-    assert expected in drawn(monkeypatch, Screen(), context)
+def test_the_finest_level_is_returned_if_none_is_good_enough():
+    """With its error, and the statement that it is too large."""
+    found = halvings(range(1, 4), tol=1e-9)
+    assert (found.value, found.error, found.met) == (1 / 8, 1 / 8, False)
 
 
-def test_short_computations_have_no_bars(monkeypatch):
-    """What is over within the delay shows nothing, even on a terminal."""
-    stream = Screen()
-    monkeypatch.setattr(sys, "stderr", stream)
-    with refine.bar("simulating", 3) as advance:
-        advance(3)
-    assert "simulating" not in stream.getvalue()
+def test_one_level_has_no_error():
+    """So that it is never good enough."""
+    found = halvings([1], tol=1.0)
+    assert (found.error, found.met) == (None, False)
+
+
+def test_hopeless_refinements_end_early():
+    """Finer levels are not solved."""
+    found = halvings(range(1, 9), tol=0.0, hopeless=lambda value, error: True)
+    assert found.solutions == (1 / 2, 1 / 4)
+    assert not found.met
+
+
+def test_singular_equations_are_refused():
+    """What libraries raise becomes one line for the user."""
+    with pytest.raises(ToleranceError, match="singular in double precision"):
+        until_agreement([1], lambda level: np.linalg.inv(np.zeros((2, 2))), None, None)
