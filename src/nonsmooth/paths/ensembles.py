@@ -134,7 +134,7 @@ def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
     return np.concatenate(
         [
             np.broadcast_to(start, (1, len(start), sampling.paths)),
-            np.concatenate(list(kept), axis=2),
+            np.concatenate(kept, axis=2),
         ]
     )
 
