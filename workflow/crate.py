@@ -97,7 +97,7 @@ def _records():
     found = {}
     for path in RECORDS.glob("*"):
         if path.is_file():
-            name = base64.b64decode(path.name).decode()
+            name = base64.urlsafe_b64decode(path.name).decode()
             found[name] = json.loads(path.read_text(encoding="utf-8"))
     return found
 
@@ -308,15 +308,21 @@ def _sha256(path):
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
+def _outputs(config):
+    """Where the run wrote, by its own configuration over the default one."""
+    layers = [yaml.safe_load(Path(p).read_text("utf-8")) for p in ("config.yaml", config)]
+    return layers[0]["outputs"] | layers[1].get("outputs", {})
+
+
 def main() -> int:
     """Read the command line and write the crate."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--config", default="config.yaml", help="configuration of the run")
     parser.add_argument("--agent", default="", help="who ran it")
     arguments = parser.parse_args()
-    outputs = yaml.safe_load(Path(arguments.config).read_text(encoding="utf-8"))["outputs"]
-    path = Path(outputs["results"]) / "crate.zip"
     try:
+        outputs = _outputs(arguments.config)
+        path = Path(outputs["results"]) / "crate.zip"
         jobs = jobs_of(outputs["paper"])
         crate = crate_of(jobs, outputs["paper"], arguments.config, arguments.agent)
         partial = path.with_name(".crate.partial.zip")

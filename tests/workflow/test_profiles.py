@@ -1,4 +1,4 @@
-"""The profile for Slurm fits the rules."""
+"""The profiles fit the rules, and let nothing in."""
 
 import re
 
@@ -11,6 +11,14 @@ PROFILE = yaml.safe_load((ROOT / "workflow/profiles/slurm/profile.yaml").read_te
 RULES = "\n".join(path.read_text() for path in (ROOT / "workflow/rules").glob("*.smk"))
 ARRAYS = set(PROFILE["slurm-array-jobs"].split(","))
 GROUPED = set(PROFILE["groups"])
+
+
+def test_configurations_are_read_before_snakemake_reads_them():
+    """It would run code in those that ask for it; how that is refused is tried with the default."""
+    default = yaml.safe_load((ROOT / "workflow/profiles/default/profile.yaml").read_text())
+    for profile in (default, PROFILE):
+        assert profile["__use_yte__"] is True
+        assert profile["__definitions__"][-1] == "require_readable()"
 
 
 def test_every_rule_that_it_names_exists():

@@ -24,8 +24,8 @@ def time_step(check):
         }
         for row in table.itertuples()
     ]
-    plain = table.rename(columns=lambda name: name.replace("_error", "_standard_error"))
-    plain = plain.rename(columns={"standard_standard_error": "standard_error"})
+    errors = [name for name in table if name.endswith("_error") and name != "standard_error"]
+    plain = table.rename(columns={q: q.replace("_error", "_standard_error") for q in errors})
     plain["distance_standard_error"] = plain["standard_error"]
     return plain, pd.DataFrame(cells)
 
