@@ -38,7 +38,8 @@ def require_moderate(
     if not used:
         return
     places = np.array(list(itertools.product(tuning.NEAR.places, repeat=len(used)))).T
-    values = vectorised(expression, used)(*places)
+    f = vectorised(expression, used)
+    values = f(*places)
     if np.any(np.isnan(values)):
         place = ", ".join(
             f"{symbol} = {value:g}"
@@ -48,12 +49,19 @@ def require_moderate(
             f"{name} = {quoted(text)} is not a number at {place}; choose a formula that is"
         )
     least, most = tuning.NEAR.sizes
-    largest = np.max(np.abs(values[np.isfinite(values)]), initial=0.0)
+    largest = _largest(values)
+    if 0 < largest < least:  # a peak may be elsewhere
+        end, count = tuning.REGULARITY.near, tuning.REGULARITY.points
+        largest = _largest(f(*np.random.default_rng(0).uniform(-end, end, (len(used), count))))
     if largest > most or 0 < largest < least:
         raise ExpressionError(
             f"{name} = {quoted(text)} is of the size {largest:.0e} at states of the size 1; give "
             f"one between {least:g} and {most:g}"
         )
+
+
+def _largest(values: np.ndarray) -> float:
+    return float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
 
 
 @lru_cache(maxsize=256)
@@ -166,5 +174,5 @@ def _sweeps(g: Callable, end: float) -> float:
     finite = np.isfinite(values) & np.isfinite(change)
     if not finite.any() or np.ptp(values[finite]) == 0:
         return 0.0
-    slope = np.mean(np.abs(change[finite])) / chosen.apart
-    return float(slope * 2 * end / np.ptp(values[finite]))
+    share = np.abs(change[finite]) / np.ptp(values[finite])  # first, so that sums do not overflow
+    return float(np.mean(share) / chosen.apart * 2 * end)

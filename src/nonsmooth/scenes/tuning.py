@@ -56,7 +56,11 @@ class Formula:
 
 @dataclass(frozen=True)
 class Near:
-    """States at which formulas must be numbers of a moderate size."""
+    """States at which formulas must be numbers of a moderate size.
+
+    A formula that is too small there may have a peak elsewhere; it is looked for as far as
+    `Regularity.near`.
+    """
 
     # chosen: values of each variable, of the size of the yield limit, within which every path is
     # for some of its time

@@ -50,6 +50,7 @@ def test_poles_are_found(formula, place):
         "sign(sin(50*y))",
         "sin(500*y)",
         "exp(exp(y))",
+        "(1 - exp(-(y - 0.8)/0.01))**2",
         "max(0, y - 10)",
         "1e6 + y",
         "x*y*eta*zeta",
@@ -70,6 +71,18 @@ def test_complex_values_are_found(formula):
 def test_endless_oscillations_are_found(formula):
     """Whatever the frequency, although it is looked at in a few thousand points."""
     assert "up and down" in fault(parse(formula, STATE_VARIABLES))
+
+
+@pytest.mark.parametrize("formula", ["exp(-((y - 0.3)/0.02)**2)", "exp(-((y - 3)/0.1)**2)"])
+def test_narrow_peaks_are_of_a_moderate_size(formula):
+    """Although they are tiny at the places that are looked at first."""
+    ns.Scene("friction", observable=formula)
+
+
+def test_tiny_formulas_are_refused():
+    """A formula that is tiny everywhere would be lost in single precision."""
+    with pytest.raises(ns.NonsmoothError, match="is of the size 5e-20 at states"):
+        ns.Scene("friction", observable="1e-20*y")
 
 
 def test_only_what_can_be_reached_counts():
