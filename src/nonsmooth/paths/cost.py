@@ -23,14 +23,14 @@ def require_time(steps: float, sampling: Sampling) -> None:
     ToleranceError
     """
     chosen = tuning.COST
-    threads = sampling.threads or os.cpu_count() or 1
     blocks = -(-sampling.paths // BLOCK)
+    threads = min(sampling.workers, blocks)
     work = steps * (blocks * chosen.block_step + sampling.paths * chosen.path_step)
-    hours = float(work / min(threads, blocks) / 3600)
+    hours = float(work / threads / 3600)
     if hours > chosen.longest_run:
         raise ToleranceError(
             f"{sampling.paths:.2g} paths of {steps:.2g} steps would take some {hours:.0e} hours on "
-            f"{min(threads, blocks)} threads, above the limit of {chosen.longest_run:g}; choose a "
+            f"{threads} threads, above the limit of {chosen.longest_run:g}; choose a "
             "longer step, fewer paths or a shorter time, or average several runs with other seeds"
         )
 

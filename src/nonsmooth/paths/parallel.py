@@ -1,6 +1,5 @@
 """Blocks of paths on several threads: in order, with a bar, and stopped at once by Ctrl-C."""
 
-import os
 import queue
 import threading
 from collections import deque
@@ -52,13 +51,9 @@ def count(steps: int) -> None:
         run.count(steps)
 
 
-def _threads(sampling):
-    return sampling.threads or os.cpu_count() or 1
-
-
 def kept_at_once(sampling: Sampling) -> int:
     """Return the largest number of results of `parallel` that are kept at once."""
-    return 4 * _threads(sampling)
+    return 4 * sampling.workers
 
 
 def parallel(
@@ -94,7 +89,7 @@ def parallel(
     jobs = blocks(sampling.first_path, sampling.paths)
     threads = [
         threading.Thread(target=_serve, args=(todo, work, run), daemon=True)
-        for _ in range(min(_threads(sampling), len(jobs)))
+        for _ in range(min(sampling.workers, len(jobs)))
     ]
     try:
         for thread in threads:

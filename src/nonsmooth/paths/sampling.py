@@ -1,5 +1,6 @@
 """The settings of one Monte Carlo run, in one record."""
 
+import os
 from dataclasses import dataclass, replace
 
 from nonsmooth.paths.kernels.random_numbers import labelled
@@ -37,6 +38,11 @@ class Sampling:
     threads: int | None = None
     scheme: str = "strang"
     precision: str = "float32"
+
+    @property
+    def workers(self) -> int:
+        """Number of threads, all cores unless given."""
+        return self.threads or os.cpu_count() or 1
 
     def labelled(self, label: str | int) -> "Sampling":
         """Return the same settings with another seed, whose paths are independent of these."""
