@@ -34,6 +34,7 @@ def test_a_new_n_is_solved_alone(finished):
     assert finished.jobs() == {
         "convergence_spectral": 1,
         "convergence_finite_difference": 1,
+        "check_convergence": 1,
         "table_4": 1,
         "values": 1,
         "paper": 1,
@@ -74,6 +75,7 @@ def test_a_module_reruns_exactly_the_rules_that_use_it(finished):
         "variance_finite_difference": 1,
         "convergence_finite_difference": 1,
         "check_variance": 1,
+        "check_convergence": 1,
         "figure_2a": 1,
         "table_4": 1,
         "errata": 1,
