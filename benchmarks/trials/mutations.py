@@ -373,6 +373,7 @@ OUTPUTS = {
         *("config", "examples", "benchmarks", ".venv/x", ".snakemake", "paper", "README.md"),
         *("results/", "results//x", "results/../src", "config.yaml/results", "{scene}", "a\tb"),
         *("x/" * 2000 + "x", "x" * 300, "/dev/null", "/proc/x", "profiles/x", "paper/paper.pdf"),
+        *("/etc", "/usr/bin", "/usr/x"),
     ],
 }
 LEGAL = [

@@ -14,6 +14,8 @@ SOURCES = {
     *("src", "workflow", "tests", "docs", "config", "examples", "benchmarks", "profiles"),
     *("node_modules", "build", "dist"),
 }
+# what the operating system holds
+SYSTEM = {"bin", "boot", "dev", "etc", "lib", "lib64", "proc", "sbin", "sys", "usr"}
 # folders of the results that belong to rules
 GENERATED = {"figures", "tables", "logs", "benchmarks"} | {
     path.stem for path in Path(__file__).parents[1].glob("rules/*.smk")
@@ -71,7 +73,7 @@ def _require_own(name, text, place):
     """Refuse places where sources are, or that hold everything."""
     if place in (ROOT, *ROOT.parents, Path.home()):
         raise _refused(name, text, "holds other files than results; choose a folder below it")
-    if place.parts[1:2] in (("proc",), ("sys",), ("dev",)) and place.parts[2:3] != ("shm",):
+    if SYSTEM.intersection(place.parts[1:2]) and place.parts[1:3] != ("dev", "shm"):
         raise _refused(name, text, "is a folder of the operating system; choose another")
     # where it is, and where it seems to be
     for path in (place, Path(os.path.normpath(ROOT / text))):
