@@ -277,8 +277,8 @@ def require_slope(text: str, expression: sympy.Expr, variable: sympy.Symbol) -> 
     slope = sympy.diff(expression, variable)
     if slope.has(sympy.DiracDelta):
         raise ExpressionError(
-            f"the formula {quoted(text)} has no derivative where its sign(...) jumps; use abs, max "
-            "or min"
+            f"the derivative of {quoted(text)} is not a formula, as its sign(...) jumps; write it "
+            "with abs, max or min"
         )
     if slope.has(*_NOT_FORMULAS):
         raise ExpressionError(
