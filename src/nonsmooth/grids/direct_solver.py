@@ -32,8 +32,7 @@ def _interruptible(call):
 
     Python looks for Ctrl-C between two of its own instructions, and not within a call of a
     compiled library. After Ctrl-C the call goes on until it is done or the program ends, and its
-    result is dropped.
-    The call must release Python's global lock, as the sparse factorisation of scipy does.
+    result is dropped. It must release Python's global lock, as scipy's sparse factorisation does.
     """
     result: Future = Future()
 
