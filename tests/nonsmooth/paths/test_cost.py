@@ -37,7 +37,7 @@ def test_hours_are_allowed():
 )
 def test_endless_simulations_are_refused(arguments):
     """Each is refused with its cost and a cure, in one line, before it starts."""
-    with pytest.raises(ns.NonsmoothError, match=r"choose|use tol") as refused:
+    with pytest.raises(ns.NonsmoothError, match=r"choose|use tol|give a number") as refused:
         ns.simulate(SCENE, **arguments)
     assert "\n" not in str(refused.value)
 

@@ -51,4 +51,4 @@ def test_an_error_stops_the_other_threads():
     with pytest.raises(ZeroDivisionError):
         # the first block has no end, so that the second one's error must not wait for it
         list(parallel(work, sampling(2, threads=2), steps=1))
-    assert threading.active_count() == before
+    assert threading.active_count() <= before  # those of other tests may end meanwhile
