@@ -117,8 +117,10 @@ def test_what_can_be_answered_is(call):
         assert np.all(np.isfinite(call()))
 
 
+# a shell starts what runs in its background with SIGINT ignored
 PROGRAM = """
-import warnings
+import signal, warnings
+signal.signal(signal.SIGINT, signal.default_int_handler)
 warnings.simplefilter("ignore")
 import nonsmooth as ns
 scene = ns.Scene("obstacle", observable="x")
@@ -144,19 +146,22 @@ def test_ctrl_c_ends_a_computation(call):
         stderr=subprocess.PIPE,
         text=True,
     ) as process:
-        assert process.stdout.readline() == "begun\n"
-        time.sleep(2)  # it is in the midst of the computation
-        watched = psutil.Process(process.pid)
-        began = sum(watched.cpu_times()[:2])
-        process.send_signal(signal.SIGINT)
-        worked = began
-        while process.poll() is None:
-            try:
-                worked = sum(watched.cpu_times()[:2])
-            except psutil.Error:
-                break
-            time.sleep(0.02)
-            assert worked - began < 2 * psutil.cpu_count(), "the computation goes on"
-        _, errors = process.communicate(timeout=60)
+        try:
+            assert process.stdout.readline() == "begun\n"
+            time.sleep(2)  # it is in the midst of the computation
+            watched = psutil.Process(process.pid)
+            began = sum(watched.cpu_times()[:2])
+            process.send_signal(signal.SIGINT)
+            worked = began
+            while process.poll() is None:
+                try:
+                    worked = sum(watched.cpu_times()[:2])
+                except psutil.Error:
+                    break
+                time.sleep(0.02)
+                assert worked - began < 2 * psutil.cpu_count(), "the computation goes on"
+            _, errors = process.communicate(timeout=60)
+        finally:
+            process.kill()
     assert "KeyboardInterrupt" in errors
     assert process.returncode != 0
