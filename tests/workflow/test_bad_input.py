@@ -79,7 +79,7 @@ def of_another_model(path):
     [
         (truncated, " is truncated, changed, or no artifact"),
         (flipped, " is damaged"),
-        (with_nan, " is damaged"),
+        (with_nan, " is truncated, changed, or no artifact"),
         (foreign, " is truncated, changed, or no artifact"),
         (of_another_model, ": it is trajectories/obstacle.nc under another name"),
     ],

@@ -39,6 +39,5 @@ def test_what_has_no_answer_is_refused():
     """A bounded integral, a tolerance out of reach; one line each."""
     with pytest.raises(ToleranceError, match="may be 0"):
         ns.asymptotic_variance(ns.Scene("obstacle", potential="x**2/2"), 0.1, method="monte_carlo")
-    for tol in (1e-5, np.nan):
-        with pytest.raises(ToleranceError, match="use tol >="):
-            ns.asymptotic_variance(ns.Scene("obstacle", observable="x"), tol, method="monte_carlo")
+    with pytest.raises(ToleranceError, match="use tol >="):
+        ns.asymptotic_variance(ns.Scene("obstacle", observable="x"), 1e-5, method="monte_carlo")
