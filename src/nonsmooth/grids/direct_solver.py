@@ -9,6 +9,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from sympy import Symbol
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
@@ -16,15 +17,27 @@ from nonsmooth.scenes.scene import Scene
 
 
 def factorise(matrix: sp.sparray) -> spla.SuperLU:
-    """Sparse LU of a matrix whose pattern is symmetric and whose diagonal is not small."""
-    return _interruptible(
-        lambda: spla.splu(
-            matrix.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=1e-3,
-            options={"SymmetricMode": True},
+    """Sparse LU of a matrix whose pattern is symmetric and whose diagonal is not small.
+
+    Raises
+    ------
+    ToleranceError
+        If the memory does not hold the factors.
+    """
+    try:
+        return _interruptible(
+            lambda: spla.splu(
+                matrix.tocsc(),
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=1e-3,
+                options={"SymmetricMode": True},
+            )
         )
-    )
+    except MemoryError:
+        raise ToleranceError(
+            f"the memory does not hold the factors of {matrix.shape[0]} equations; choose a larger "
+            "tol or Monte Carlo, or free memory"
+        ) from None
 
 
 def _interruptible(call):

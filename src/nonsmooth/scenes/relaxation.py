@@ -43,8 +43,9 @@ def rate_at_infinity(scene: Scene) -> Estimate:
     rates = [vectorised(drift[symbol], symbols) for symbol in symbols]
 
     def slopes(direction):
-        values = np.array([rate(*np.outer(direction, far_out)) for rate in rates])
-        return np.diff(values) / np.diff(far_out)
+        with np.errstate(all="ignore"):  # what is infinite is not linear and is refused below
+            values = np.array([rate(*np.outer(direction, far_out)) for rate in rates])
+            return np.diff(values) / np.diff(far_out)
 
     near, far = np.moveaxis(np.array([slopes(unit) for unit in np.eye(len(symbols))]), 2, 0)
     for corner in itertools.product([-1.0, 1.0], repeat=len(symbols)):

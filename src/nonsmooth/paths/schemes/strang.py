@@ -250,23 +250,28 @@ def gaussian_step(matrix: np.ndarray, sigma: float, step: float) -> tuple[tuple,
     diffusion = np.zeros((size, size))
     diffusion[0, 0] = sigma**2
     transition = scipy.linalg.expm(matrix * step)
+    lost = SceneError(
+        f"the covariance of the noise over a step = {step:.1e} is lost in rounding; choose "
+        "another step, or a noise whose parameters are of similar sizes"
+    )
     if step * np.linalg.norm(matrix) < 1:
         block = np.block([[-matrix, diffusion], [np.zeros((size, size)), matrix.T]])
         covariance = transition @ scipy.linalg.expm(block * step)[:size, size:]
     else:  # over a long step, growing exponentials in the block would cost all digits
-        with warnings.catch_warnings():  # the result is examined below
-            warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)
-            stationary = scipy.linalg.solve_continuous_lyapunov(matrix, -diffusion)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", RuntimeWarning)  # of equations changed to be solvable
+            warnings.simplefilter("ignore", scipy.linalg.LinAlgWarning)  # examined below
+            try:
+                stationary = scipy.linalg.solve_continuous_lyapunov(matrix, -diffusion)
+            except RuntimeWarning:
+                raise lost from None
         covariance = stationary - transition @ stationary @ transition.T
     padded = np.zeros((2, 2, 2))
     padded[0, :size, :size] = transition - np.eye(size)
     try:
         padded[1, :size, :size] = np.linalg.cholesky((covariance + covariance.T) / 2)
     except np.linalg.LinAlgError:
-        raise SceneError(
-            f"the covariance of the noise over a step = {step:.1e} is lost in rounding; choose "
-            "another step, or a noise whose parameters are of similar sizes"
-        ) from None
+        raise lost from None
     if size == 1:
         padded[0, 0, 0] = math.expm1(matrix[0, 0] * step)
     lower = padded[1, 0, 0], padded[1, 1, 0], padded[1, 1, 1]
