@@ -4,10 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.sparse
+import scipy.sparse.linalg
 
 import nonsmooth as ns
+from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.alternating_solver import AlternatingSolver
-from nonsmooth.grids.direct_solver import DirectSolver
+from nonsmooth.grids.direct_solver import DirectSolver, factorise
 from nonsmooth.grids.generator import assemble, evaluate
 from nonsmooth.grids.mesh.axes import axes as axes_of
 from nonsmooth.grids.mesh.axes import variables
@@ -75,3 +78,14 @@ def test_means_are_those_of_the_invariant_measure(made):
     assert mean == pytest.approx(masses @ test, rel=1e-6)
     _, mean = solver.solve(solver.fold(evaluate(y, axes)), ODD, ACCURACY)
     assert mean == pytest.approx(0, abs=1e-6)
+
+
+def test_a_lack_of_memory_is_told_in_one_line(monkeypatch):
+    """The factorisation names its size and the cure."""
+
+    def full(*arguments, **options):
+        raise MemoryError
+
+    monkeypatch.setattr(scipy.sparse.linalg, "splu", full)
+    with pytest.raises(ToleranceError, match="does not hold the factors of 3 equations"):
+        factorise(scipy.sparse.eye_array(3))

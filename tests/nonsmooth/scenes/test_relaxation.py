@@ -21,3 +21,9 @@ def test_rate_at_infinity_of_walls():
         assert abs(found.value - exact) <= found.error < 1e-5
     with pytest.raises(SceneError, match="grow quadratically"):
         rate_at_infinity(ns.Scene("friction", ns.Langevin("eta**4/4")))
+
+
+def test_what_overflows_is_not_linear():
+    """A potential that is infinite far out is refused without a warning."""
+    with pytest.raises(SceneError, match="grow quadratically"):
+        rate_at_infinity(ns.Scene("elasto_plastic", potential="exp(x)", observable="y"))
