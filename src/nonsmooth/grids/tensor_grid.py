@@ -97,7 +97,7 @@ def _discretised(scene, grid):
 
 def depth_for(tol: float) -> float:
     """Return the depth of a box that is deep enough for a relative tolerance."""
-    return math.log(1 / tol) + tuning.TENSOR_GRIDS.spare
+    return max(math.log(1 / tol), 0.0) + tuning.TENSOR_GRIDS.spare
 
 
 def fitted(scene: Scene, depth: float, level: int) -> Grid:

@@ -68,6 +68,7 @@ def invariant_density(
     tol = None if tol is None else require_tolerance(tol)
     points = None if points is None else _require_points(scene, points)
     tol = tuning.INVARIANT_DENSITY.tol[scene.dimension] if tol is None else tol
+    tol = min(tol, tuning.INVARIANT_DENSITY.loosest)
     if closed := closed_form(scene):
         if points is None:
             points = _equidistant(half_widths(scene, tensor_grid.depth_for(tol)))

@@ -55,6 +55,8 @@ class InvariantDensity:
 
     # chosen: tolerance unless one is given; it is reached in seconds
     tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2})
+    # chosen: on coarser grids the error that two levels show may be smaller than the true one
+    loosest: float = 0.3
     points: int = 201  # chosen: number of points of a density unless points are given
     deepest: float = 80.0  # derived: exp(-80) is below rounding of the norm of a closed form
     gauss: int = 16  # chosen: Gauss points for each piece of a bin

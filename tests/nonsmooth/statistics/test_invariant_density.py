@@ -100,3 +100,14 @@ def test_loose_averages_are_within_their_errors_in_every_bin(n, damping, sigma, 
     assert np.all(np.abs(loose - tight) <= loose_error + tight_error)
     assert np.all(loose >= 0)
     assert np.max(loose_error) <= 0.1 * np.max(loose) * (1 + 1e-3)
+
+
+@pytest.mark.parametrize("tol", [1e6, 1.0, 0.5, 0.3, 0.1])
+def test_loose_tolerances_are_within_their_errors(tol):
+    """Also at the wall, where the density of a yielding displacement is largest."""
+    points = {"y": [0.0, 1.0], "x": [-1.0, 0.0, 1.0]}
+    scene = ns.Scene("elasto_plastic", potential="x**2/2")
+    loose, fine = (ns.invariant_density(scene, tol=t, points=points) for t in (tol, 1e-3))
+    for name in ("density_y", "density_x", "density_y_x"):
+        allowed = loose[f"{name}_error"] + fine[f"{name}_error"]
+        assert bool((abs(loose[name] - fine[name]) <= allowed).all())
