@@ -4,10 +4,21 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import ndtri
 
 from reproduction.errors import CheckError
 
+FALSE_ALARM = 1e-6  # probability that a check fails although nothing is wrong
 TELLING = 0.1  # a bound above this part of the largest value says nothing of use
+
+
+def standard_errors(count: int) -> float:
+    """Return how many standard errors a number may be off.
+
+    By Bonferroni's inequality, chance makes any of `count` numbers with normal errors, which may
+    depend on each other, differ by more with the probability `FALSE_ALARM` at most.
+    """
+    return -ndtri(FALSE_ALARM / 2 / count)
 
 
 def deviation(

@@ -25,10 +25,14 @@ from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.simulation import simulate
-from nonsmooth.paths.time_loop import march, march_pair
+from nonsmooth.paths.time_loop import (
+    EVERYWHERE,
+    compile_march,
+    compile_march_pair,
+    march,
+    march_pair,
+)
 from nonsmooth.scenes.scene import Scene
-
-_EVERYWHERE = -np.inf, np.inf
 
 
 @dataclass(frozen=True)
@@ -164,16 +168,16 @@ def _spread(scene, after, sampling):
 def _gains(scene, after, cycles, sampling):
     """For each path, sum the gains of its cycles and count the cycles: shape (cycles, 2, paths)."""
     s = registry.coefficients(scene, sampling.scheme, sampling.step, sampling.precision)
-    march(s, new_panel(scene, sampling.seed, 0, sampling.precision), 0, 0, *_EVERYWHERE)
+    compile_march(s, new_panel(scene, sampling.seed, 0, sampling.precision))
 
     def run(job):
         block, lanes = job
         panel = new_panel(scene, sampling.seed, block, sampling.precision)
         integral = panel.total[TOTAL_DELTA, :lanes]
-        march(s, panel, lanes, after, *_EVERYWHERE)  # the approach to stationarity
+        march(s, panel, lanes, after, *EVERYWHERE)  # the approach to stationarity
         states = [_begun(integral) for _ in cycles]
         for k in range(1, tuning.SAMPLED.cycles * after + 1):
-            march(s, panel, lanes, 1, *_EVERYWHERE)
+            march(s, panel, lanes, 1, *EVERYWHERE)
             for state, cycle in zip(states, cycles, strict=True):
                 if k % cycle.stride == 0:
                     _look(state, integral, cycle.threshold, cycle.after)
@@ -191,8 +195,7 @@ def _step_bias(scene, after, cycle, sampling):
         for h in (sampling.step / 2, sampling.step)
     )
     given = registry.on_given_increments(coarse)
-    empty = new_panel(scene, sampling.seed, 0, sampling.precision)
-    march_pair(fine, given, empty, empty, 0, 0, *_EVERYWHERE, 0.0, np.empty((2, 0)))
+    compile_march_pair(fine, given, new_panel(scene, sampling.seed, 0, sampling.precision))
 
     def run(job):
         block, lanes = job
@@ -201,7 +204,7 @@ def _step_bias(scene, after, cycle, sampling):
         passage = np.full((2, lanes), np.inf)
 
         def advance(steps):
-            march_pair(fine, given, *panels, lanes, steps, *_EVERYWHERE, 0.0, passage)
+            march_pair(fine, given, *panels, lanes, steps, *EVERYWHERE, 0.0, passage)
 
         advance(after)
         states = [_begun(integral) for integral in integrals]

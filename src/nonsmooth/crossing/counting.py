@@ -11,7 +11,7 @@ from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
-from nonsmooth.paths.time_loop import march
+from nonsmooth.paths.time_loop import compile_march, march
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.thresholds import bounds
 
@@ -60,8 +60,7 @@ def first_passage_counts(
         (steps, registry.coefficients(scene, sampling.scheme, h, sampling.precision))
         for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), sampling.step)
     ]
-
-    march(grid[0][1], new_panel(scene, sampling.seed, 0, sampling.precision), 0, 0, *levels)
+    compile_march(grid[0][1], new_panel(scene, sampling.seed, 0, sampling.precision))
 
     def run(job):
         block, lanes = job

@@ -14,11 +14,15 @@ from nonsmooth.paths.parallel import kept_at_once, parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
-from nonsmooth.paths.time_loop import march, march_pair
+from nonsmooth.paths.time_loop import (
+    EVERYWHERE,
+    compile_march,
+    compile_march_pair,
+    march,
+    march_pair,
+)
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
-
-_EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
 
 
 def gram(
@@ -96,16 +100,14 @@ def over_blocks(
         h: registry.coefficients(scene, sampling.scheme, h, sampling.precision, slope)
         for h in {h for _, h in grid}
     }
-
-    empty = new_panel(scene, sampling.seed, 0, sampling.precision)
-    march(coefficients[grid[0][1]], empty, 0, 0, *_EVERYWHERE)
+    compile_march(coefficients[grid[0][1]], new_panel(scene, sampling.seed, 0, sampling.precision))
 
     def run(job):
         block, count = job
         panel = new_panel(scene, sampling.seed, block, sampling.precision)
         kept = []
         for steps, h in grid:
-            march(coefficients[h], panel, count, steps, *_EVERYWHERE)
+            march(coefficients[h], panel, count, steps, *EVERYWHERE)
             kept.append(reduce(panel, count))
         return np.array(kept)
 
@@ -131,12 +133,8 @@ def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
 
     kept = list(over_blocks(scene, equal_steps(times, sampling.step), double, state, control=False))
     start = state(new_panel(scene, sampling.seed, 0, "float64"), 1)
-    return np.concatenate(
-        [
-            np.broadcast_to(start, (1, len(start), sampling.paths)),
-            np.concatenate(kept, axis=2),
-        ]
-    )
+    later = np.concatenate(kept, axis=2)
+    return np.concatenate([np.broadcast_to(start, (1, *later.shape[1:])), later])
 
 
 def integrals_at(
@@ -168,7 +166,7 @@ def coupled(
     scene: Scene,
     times: ArrayLike,
     sampling: Sampling,
-    levels: tuple[float, float] = _EVERYWHERE,
+    levels: tuple[float, float] = EVERYWHERE,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Simulate paths with a step and with half of it on the same noise.
 
@@ -197,11 +195,10 @@ def coupled(
         )
         for _, h in grid
     ]
-
-    empty = new_panel(scene, sampling.seed, 0, precision)
     fine, coarse = pairs[0]
-    given = registry.on_given_increments(coarse)
-    march_pair(fine, given, empty, empty, 0, 0, *levels, 0.0, np.empty((2, 0)))
+    compile_march_pair(
+        fine, registry.on_given_increments(coarse), new_panel(scene, sampling.seed, 0, precision)
+    )
 
     def run(job):
         block, count = job

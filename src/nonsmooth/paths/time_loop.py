@@ -3,8 +3,7 @@
 It advances the paths of one panel (see `kernels.panel`). When the loop is compiled, the type of the
 coefficients it is given decides which scheme's `flow` and `kick` are called in it. It runs in
 pieces, between which its thread can be stopped. This does not change any bit. Before threads run
-it, the main thread calls it once with no paths, so that it is compiled where Ctrl-C can interrupt
-that.
+it, the main thread compiles it, where Ctrl-C can interrupt that.
 """
 
 import time
@@ -34,6 +33,8 @@ from nonsmooth.paths.kernels.random_numbers import normals
 from nonsmooth.paths.kernels.vector_math import fma, like
 from nonsmooth.paths.parallel import count
 from nonsmooth.paths.schemes import registry
+
+EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
 
 
 @intrinsic
@@ -98,6 +99,11 @@ def march(s: Any, panel: Panel, lanes: int, steps: int, lower: float, upper: flo
         lanes = _march(s, panel, lanes, first, last, steps, lower, upper)
         count(last - first)
     return lanes
+
+
+def compile_march(s: Any, panel: Panel) -> None:
+    """Compile `march` for the coefficients of a scheme and the precision of a panel."""
+    march(s, panel, 0, 0, *EVERYWHERE)
 
 
 def _pieces(steps: int) -> Iterator[tuple[int, int]]:
@@ -219,6 +225,11 @@ def _march_pair(
         if (k + 1) % FLUSH == 0 or k == 2 * steps:
             flush(data, total, lanes)
             flush(joined, other_total, lanes)
+
+
+def compile_march_pair(fine: Any, coarse: Any, panel: Panel) -> None:
+    """Compile `march_pair` for two sets of coefficients and the precision of a panel."""
+    march_pair(fine, coarse, panel, panel, 0, 0, *EVERYWHERE, 0.0, np.empty((2, 0)))
 
 
 @inlined

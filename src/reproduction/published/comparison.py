@@ -3,13 +3,12 @@
 import math
 import re
 from dataclasses import dataclass, field
-from statistics import NormalDist
 
+from reproduction.agreement import standard_errors
 from reproduction.errors import ArtifactError
 from reproduction.published.record import Number, Record
 from reproduction.rendering.quoted import ERROR, INTERVAL, STANDARD
 
-FALSE_ALARM = 1e-6  # probability that chance makes any number of a right run off
 MAGNITUDE = 10.0  # an error is stated by its order of magnitude
 HALF_INTERVAL = 1.96  # standard errors
 
@@ -60,7 +59,7 @@ def compare(published: Record, found: Record, results: str = "results") -> Compa
                 f"{results}/{name} was made with other parameters (sizes, scenes, times) than the "
                 "published one; verify a full run, made by make paper with config.yaml as it is"
             )
-    outcome, z = Comparison(), standard_errors(published)
+    outcome, z = Comparison(), standard_errors(max(statistical(published), 1))
     for section in sorted(published.sections | found.sections, key=_in_order):
         left, right = (record.sections.get(section, {}) for record in (published, found))
         states = outcome.sections.setdefault(section, [])
@@ -81,18 +80,13 @@ def compare(published: Record, found: Record, results: str = "results") -> Compa
     return outcome
 
 
-def standard_errors(record: Record) -> float:
-    """Return how many standard errors a number may be off.
-
-    By Bonferroni's inequality, chance makes any of the record's statistical numbers of another,
-    independent run with normal errors differ by more with the probability `FALSE_ALARM` at most.
-    """
-    statistical = sum(
+def statistical(record: Record) -> int:
+    """Return the number of entries that differ by chance between independent runs."""
+    return sum(
         isinstance(entry, Number) and entry.kind in (STANDARD, INTERVAL)
         for entries in record.sections.values()
         for entry in entries.values()
     )
-    return -NormalDist().inv_cdf(FALSE_ALARM / 2 / max(statistical, 1))
 
 
 def state(published: Number | str | None, found: Number | str | None, z: float) -> str:

@@ -5,18 +5,18 @@ from statistics import NormalDist
 
 import pytest
 
+from reproduction.agreement import FALSE_ALARM, standard_errors
 from reproduction.errors import ArtifactError
 from reproduction.published.comparison import (
     DIFFERENT,
-    FALSE_ALARM,
     IDENTICAL,
     MISSING,
     OFF,
     WITHIN,
     compare,
     spelled,
-    standard_errors,
     state,
+    statistical,
 )
 from reproduction.published.record import Number, Record
 from reproduction.rendering.quoted import BOUND, ERROR, INTERVAL, ROUNDING, STANDARD
@@ -85,7 +85,8 @@ def artifact(sha256, parameters="p"):
 
 def test_the_false_alarm_is_shared_among_the_statistical_numbers():
     """Two-sided, and by Bonferroni."""
-    tail = 2 * (1 - NormalDist().cdf(standard_errors(record())))
+    assert statistical(record()) == 100
+    tail = 2 * (1 - NormalDist().cdf(standard_errors(100)))
     assert 100 * tail == pytest.approx(FALSE_ALARM, rel=1e-6)
 
 

@@ -1,14 +1,12 @@
 """Check figure 2b: the time step's bias is below the standard error, and W tends to W_star."""
 
 import numpy as np
-from scipy.special import ndtri
 
+from reproduction.agreement import standard_errors
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 from reproduction.rendering.tables import sorted_by
-
-FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 
 
 def compare(monte_carlo, asymptotic, gamma2):
@@ -45,7 +43,7 @@ def compare(monte_carlo, asymptotic, gamma2):
     standard_error = np.array([float(d["probability_error"].max()) for d in monte_carlo])
     relative, relative_error = float(gamma2["bias"]), float(gamma2["bias_error"])
     expected, expected_error = relative * column["slope"], relative_error * column["slope"]
-    z = -ndtri(FALSE_ALARM / 2 / len(p))
+    z = standard_errors(len(p))
     contradiction = np.abs(column["bias"] - expected) / np.hypot(
         column["bias_error"], expected_error
     )

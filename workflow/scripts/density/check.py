@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from reproduction.agreement import deviation
+from reproduction.agreement import FALSE_ALARM, deviation
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 
-FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 CURE = (
     "lengthen density.time, reduce density.step or tighten density.tolerances; else look for a "
     "mistake"

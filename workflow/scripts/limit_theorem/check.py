@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from reproduction.agreement import FALSE_ALARM
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
@@ -13,8 +14,6 @@ from reproduction.limit_theorem import (
     normal_law,
     sampling_bound,
 )
-
-FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 
 LAWS = {
     "final": (normal_law, "Xi_p(1)/gamma to the standard normal law"),

@@ -1,14 +1,13 @@
 """Evaluate the asymptotic and the corrected formula, and compare them with Monte Carlo."""
 
 import numpy as np
-from scipy.special import ndtri
 
 from nonsmooth.crossing.brownian import asymptotic_crossing
+from reproduction.agreement import standard_errors
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 
-FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 DESCRIPTIONS = {
     "probability": "W_star(limit / gamma, duration)",
     "probability_error": "error inherited from gamma^2",
@@ -47,7 +46,7 @@ def compare(variance, monte_carlo):
     kappa, kappa_error = float(variance["kappa"]), float(variance["kappa_error"])
     limits = np.array([float(run["limit"]) for run in monte_carlo])
     durations = monte_carlo[0]["duration"].values
-    z = -ndtri(FALSE_ALARM / 2 / (len(limits) * len(durations)))
+    z = standard_errors(len(limits) * len(durations))
     found = []
     for limit, run in zip(limits, monte_carlo, strict=True):
         excess = np.abs(run["bias"]) - z * run["bias_error"]

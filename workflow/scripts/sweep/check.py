@@ -1,13 +1,11 @@
 """Check figure 6 and table 6: the time step's bias is not above the standard error."""
 
 import numpy as np
-from scipy.special import ndtri
 
+from reproduction.agreement import FALSE_ALARM, standard_errors
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
-
-FALSE_ALARM = 1e-6  # probability that this check fails although nothing is wrong
 
 
 def biases(crossing, scenes, p):
@@ -33,7 +31,7 @@ def biases(crossing, scenes, p):
     CheckError
         If a bias is above the standard error.
     """
-    z = -ndtri(FALSE_ALARM / 2 / sum(run.sizes["horizon"] for run in crossing))
+    z = standard_errors(sum(run.sizes["horizon"] for run in crossing))
     places = [(name, scale) for name in scenes for scale in p]
     excess = []
     for (name, scale), run in zip(places, crossing, strict=True):

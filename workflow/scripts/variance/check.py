@@ -1,14 +1,12 @@
 """Check that the three methods of figure 2a agree within their stated errors."""
 
 import numpy as np
-from scipy.special import ndtri
 
-from reproduction.agreement import deviation, require_telling
+from reproduction.agreement import FALSE_ALARM, deviation, require_telling, standard_errors
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 
-FALSE_ALARM = 1e-6  # probability that the Monte Carlo check fails although nothing is wrong
 CURES = {
     "finite_difference": "enlarge variance.finite_difference.half_width or nodes, or reduce "
     "time_step; else look for a mistake",
@@ -36,7 +34,7 @@ def deviations(spectral, finite_difference, monte_carlo):
         If a deviation exceeds what is allowed, or the errors of the finite differences are large.
     """
     tau, v = spectral["tau"].values, spectral["v"].values
-    z = -ndtri(FALSE_ALARM / 2 / len(tau))
+    z = standard_errors(len(tau))
     allowed = {
         "finite_difference": finite_difference["v_error"].values,
         "monte_carlo": z * np.hypot(monte_carlo["v_error"], monte_carlo["bias_error"]).values,
