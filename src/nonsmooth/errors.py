@@ -1,4 +1,15 @@
-"""The errors a user can cause: each message is one line that says what is wrong and what helps."""
+"""The errors a user can cause: each message is one line that says what is wrong and what helps.
+
+A method that misses a tolerance raises a `ToleranceError` with what it has reached as `result`, in
+the form in which it returns what meets it. Public functions hand both through `answered`.
+"""
+
+import warnings
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
+
+Found = TypeVar("Found")
+Answer = TypeVar("Answer")
 
 
 class NonsmoothError(Exception):
@@ -18,7 +29,104 @@ class AssumptionWarning(UserWarning):
 
 
 class ToleranceError(NonsmoothError):
-    """A tolerance that the method could not meet."""
+    """A tolerance that the method could not meet.
+
+    Attributes
+    ----------
+    result : object
+        The best that was reached, with its own error: what the function would have returned. None
+        if nothing is known.
+    """
+
+    def __init__(self, message: str, result: object = None):
+        super().__init__(message)
+        self.result = result
+
+
+class AccuracyWarning(UserWarning, NonsmoothError):
+    """A result that is less accurate than its method aims at, where no `tol` was asked for.
+
+    Where warnings are made errors, it is one that is told in one line.
+    """
+
+
+def answered(
+    solve: Callable[[], Found], present: Callable[[Found], Answer], tol_given: bool = True
+) -> Answer:
+    """Solve and present what is found, also if it misses the tolerance.
+
+    Parameters
+    ----------
+    solve : callable
+        Without arguments; returns what is found, or raises a `ToleranceError`.
+    present : callable
+        Turns what is found, or the `result` of the error, into the answer.
+    tol_given : bool
+        Whether somebody asked for the tolerance. If so, the error is raised again, with the answer
+        as its `result`; otherwise the answer is returned with a warning.
+
+    Returns
+    -------
+    object
+        What `present` returns.
+
+    Raises
+    ------
+    ToleranceError
+        If the tolerance was asked for, or nothing is known.
+    """
+    try:
+        return present(solve())
+    except ToleranceError as refused:
+        if refused.result is None:
+            raise
+        message, answer = str(refused), present(refused.result)  # type: ignore[arg-type]
+    if tol_given:
+        raise ToleranceError(message, answer)
+    warnings.warn(
+        f"{message}; it is returned, because no tol was given", AccuracyWarning, stacklevel=3
+    )
+    return answer
+
+
+def first_answer(
+    attempts: Iterable[Callable[[], Found]],
+    error: Callable[[Any], float],
+    good_enough: float = 0.0,
+) -> Found:
+    """Try one way after another until one meets its tolerance.
+
+    Parameters
+    ----------
+    attempts : iterable of callable
+        As `solve` of `answered`.
+    error : callable
+        Takes what is found; returns the size of its error, by which results are compared.
+    good_enough : float
+        No other way is tried once one has reached this error.
+
+    Returns
+    -------
+    object
+        What the first successful attempt returns.
+
+    Raises
+    ------
+    ToleranceError
+        The one of the attempt that has the smallest error.
+    """
+    best, least = None, float("inf")
+    for attempt in attempts:
+        try:
+            return attempt()
+        except ToleranceError as refused:
+            reached = float("inf") if refused.result is None else error(refused.result)
+            if best is None or reached < least:
+                best, least = refused, reached
+            if least <= good_enough:
+                break
+    assert best is not None  # there is at least one attempt
+    raise best
 
 
 def quoted(value: object, length: int = 80) -> str:

@@ -63,12 +63,13 @@ def require(met: bool, value: float, error: float, tol: float, cure: str = "loos
     Raises
     ------
     ToleranceError
-        With the best value and its error.
+        With both as its `result`.
     """
     if not met:
         if not value > error:
             cure += " or, if int_0^t g stays bounded, so that gamma^2 = 0, choose another g"
         raise ToleranceError(
             f"gamma^2 = {max(value, 0.0):.16g} has an error of {error:.1e}, above tol = {tol:g} "
-            f"relative; {cure}"
+            f"relative; {cure}",
+            (value, error),
         )

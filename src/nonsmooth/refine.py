@@ -67,7 +67,7 @@ def until_agreement(
     Raises
     ------
     ToleranceError
-        If the equations of a level are singular in double precision.
+        If the equations of the first or second level are singular in double precision.
     """
     solutions, estimate = [], None
     with counter("levels of resolution", length_hint(levels)) as advance:
@@ -75,6 +75,8 @@ def until_agreement(
             try:
                 solutions.append(solve(level))
             except (np.linalg.LinAlgError, ArpackError) as error_of_library:
+                if estimate is not None:  # what the levels before have found remains
+                    break
                 raise ToleranceError(
                     f"the equations are singular in double precision ({error_of_library}); give "
                     "parameters of more similar sizes or use Monte Carlo"

@@ -62,7 +62,8 @@ def layer_constants(
         lower, upper = found.value.kappa
         raise ToleranceError(
             f"kappa = {lower:.10g}, {upper:.10g} and the other constants have errors up "
-            f"to {found.error.largest():.1e}, above tol = {tol:g}; loosen tol"
+            f"to {found.error.largest():.1e}, above tol = {tol:g}; loosen tol",
+            (found.value, found.error),
         )
     return found.value, found.error
 

@@ -5,6 +5,7 @@ import time
 from nonsmooth.boundary_layer.milne import solved_constants
 from nonsmooth.boundary_layer.sampled import sampled_kappa
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
+from nonsmooth.errors import answered
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene, require_random
 
@@ -27,7 +28,7 @@ def extrapolation_length(
         drift; or any other with odd g, by Monte Carlo.
     tol : float, optional
         Absolute error wanted, "1". Unless given, it is 1e-8 for one variable, 1e-3 for two, and a
-        fifth of kappa by Monte Carlo.
+        fifth of kappa by Monte Carlo; what misses these is returned with a warning.
     side : {"upper", "lower"}, optional
         Of the threshold. For odd g kappa is the same on both sides.
     seed, threads
@@ -44,16 +45,23 @@ def extrapolation_length(
     SceneError
         If an argument is out of range, or the scene of another kind.
     ToleranceError
-        If `tol` is not met; the message has the best value and its error.
+        If `tol` is not met; the best value is its `result`.
     """
     began = time.perf_counter()
     require_random(scene)
     tol = None if tol is None else require_tolerance(tol)
     side = require_choice("side", side, SIDES)
     seed, threads = require_seed(seed), require_threads(threads)
-    solved = solved_constants(scene, tol)
-    if solved is None:
-        return sampled_kappa(scene, tol, seed, threads)
-    kappa, error = (numbers.kappa[SIDES.index(side)] for numbers in solved)
-    method = "discrete ordinates" if scene.is_line else "tensor grids"
-    return Estimate(kappa, error, method, time.perf_counter() - began)
+
+    def solve():
+        solved = solved_constants(scene, tol)
+        return sampled_kappa(scene, tol, seed, threads) if solved is None else solved
+
+    def present(found):
+        if isinstance(found, Estimate):
+            return found
+        kappa, error = (numbers.kappa[SIDES.index(side)] for numbers in found)
+        method = "discrete ordinates" if scene.is_line else "tensor grids"
+        return Estimate(kappa, error, method, time.perf_counter() - began)
+
+    return answered(solve, present, tol_given=tol is not None)

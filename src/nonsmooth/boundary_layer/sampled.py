@@ -81,7 +81,7 @@ def sampled_kappa(
     SceneError
         If g is not odd.
     ToleranceError
-        If `tol` is not met; the message has the best value and its error.
+        If `tol` is not met; the best value is its `result`.
     """
     began = time.perf_counter()
     if not scene.is_odd():
@@ -98,7 +98,10 @@ def sampled_kappa(
         if error <= (tuning.SAMPLED.tolerance * abs(value) if tol is None else tol):
             return Estimate(value, error, "Monte Carlo", time.perf_counter() - began)
         lag, paths = 1.5 * lag, 2 * paths
-    raise ToleranceError(f"kappa = {value:.3g} has an error of {error:.1e}, above tol; loosen tol")
+    raise ToleranceError(
+        f"kappa = {value:.3g} has an error of {error:.1e}, above tol; loosen tol",
+        Estimate(value, error, "Monte Carlo", time.perf_counter() - began),
+    )
 
 
 def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = None) -> Estimate:

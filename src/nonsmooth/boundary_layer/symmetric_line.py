@@ -69,7 +69,8 @@ def layer_constants(
     if not found.met:
         raise ToleranceError(
             f"kappa = {values.kappa[1]:.10g} has an error of {errors.kappa[1]:.1e} and the other "
-            f"constants up to {errors.largest():.1e}, above tol = {tol:g}; loosen tol"
+            f"constants up to {errors.largest():.1e}, above tol = {tol:g}; loosen tol",
+            (values, errors),
         )
     return values, errors
 

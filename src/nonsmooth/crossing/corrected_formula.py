@@ -72,7 +72,7 @@ def corrected_crossing(
     SceneError
         If the scene has no such formula.
     ToleranceError
-        If an error is above `tol`; the message has the value and its error.
+        If an error is above `tol`; with the values and errors as its `result`.
     """
     _require_order(scene, order)
     constants, errors = layer_constants(scene, seed, threads)
@@ -89,7 +89,8 @@ def corrected_crossing(
         raise ToleranceError(
             f"the corrected formula of order {order} has W = {value[worst]:.7g} at T = "
             f"{horizons[worst]:g} with an error of {error[worst]:.1e}, above tol = {tol:g}; raise "
-            "the order or p, loosen tol, or use method='deterministic' or 'monte_carlo'"
+            "the order or p, loosen tol, or use method='deterministic' or 'monte_carlo'",
+            (value, error),
         )
     return value, error
 

@@ -182,11 +182,18 @@ class _Request:
     def answer_of_pilot(self, pilot):
         """Return values with half the step of the pilot, or None if they are too inaccurate."""
         bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
-        crossed, half = pilot.crossed(self.times), 2**-self.order
-        off = _distance(crossed, pilot.paths) + half * np.max(np.abs(bias) + error)
-        if pilot.is_resolved(self.order) and off <= self.tol:
-            return _outcome(crossed, pilot.paths, pilot.step / 2, half * bias, half * error)
-        return None
+        off = _distance(pilot.crossed(self.times), pilot.paths)
+        off += 2**-self.order * np.max(np.abs(bias) + error)
+        return self.outcome_of_pilot(pilot) if off <= self.tol else None
+
+    def outcome_of_pilot(self, pilot):
+        """Return values with half the step of the pilot; None if it does not measure the bias."""
+        if not pilot.is_resolved(self.order):
+            return None
+        bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
+        half = 2**-self.order
+        crossed = pilot.crossed(self.times)
+        return _outcome(crossed, pilot.paths, pilot.step / 2, half * bias, half * error)
 
     def plan(self, pilot):
         """Choose from a pilot what is not given: the step, or the number of paths, or both."""
@@ -194,7 +201,7 @@ class _Request:
         crossed, fewest = pilot.crossed(self.times), pilot.paths
         if self.paths is None:
             paths = _paths_wanted(crossed, fewest, self.tol)
-            self.require_possible(paths, pilot.step, crossed, fewest)
+            self.require_possible(paths, pilot.step, crossed, fewest, pilot)
         if self.step is None:
             bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
             worst = np.max(np.abs(bias) + error)
@@ -205,14 +212,14 @@ class _Request:
                 worst = np.max(np.abs(np.array(own)).sum(axis=0))
             step = refined_step(pilot.step, worst, self.allowed_bias, self.order)
             if self.paths is None:
-                self.require_possible(paths, step, crossed, fewest)
+                self.require_possible(paths, step, crossed, fewest, pilot)
         return _Plan(step, paths, fewest, pilot)
 
     def answer(self, plan):
         """Count paths, and refine the step until its bias is within its part of the tolerance."""
         step, paths = plan.step, plan.paths
         for _ in range(tuning.COUNTING.attempts):
-            crossed, paths = self.counted(step, paths)
+            crossed, paths = self.counted(step, paths, plan.halving)
             if self.paths is None and plan.halving.step == step:
                 check = plan.halving
             else:
@@ -226,10 +233,11 @@ class _Request:
             step = refined_step(step, np.max(np.abs(bias) + error), self.allowed_bias, self.order)
         raise ToleranceError(
             f"W = {crossed[-1] / paths:.3g} has a bias of {np.max(np.abs(bias)):.1e} by the step "
-            f"{check.step:.1e}, which does not fall by the weak order; choose a step or loosen tol"
+            f"{check.step:.1e}, which does not fall by the weak order; choose a step or loosen tol",
+            _outcome(crossed, paths, check.step, bias, error),
         )
 
-    def counted(self, step, wanted):
+    def counted(self, step, wanted, pilot):
         """Count paths until there are enough; return how many crossed, and how many there were."""
         crossed, done = np.zeros(len(self.horizons), dtype=int), 0
         while done < wanted:
@@ -242,7 +250,7 @@ class _Request:
             allowed = MONTE_CARLO.spread_share * self.tol
             if self.paths is None and _distance(crossed, done) > allowed:
                 wanted = max(_paths_wanted(crossed, done, self.tol), done + BLOCK)
-                self.require_possible(wanted, step, crossed, done)
+                self.require_possible(wanted, step, crossed, done, pilot)
         return crossed, done
 
     def halved(self, step, paths, label):
@@ -252,12 +260,13 @@ class _Request:
         levels = np.sqrt(self.p) * np.array(self.threshold)
         return _Halving(step, paths, *coupled(self.scene, self.times, sampling, levels))
 
-    def require_possible(self, paths, step, crossed, count):
+    def require_possible(self, paths, step, crossed, count, pilot):
         """Refuse too many steps; the message has the estimate from the first `count` paths."""
         W, error = crossed[-1] / count, MONTE_CARLO.sigmas / 2 / np.sqrt(count)
         told = f"W = {W:.3g} has an error of {error:.1g}"
         work = tuning.COUNTING.checked * paths
-        require_possible(work, self.times[-1] / step, told, self.tol, self.most)
+        known = self.outcome_of_pilot(pilot)
+        require_possible(work, self.times[-1] / step, told, self.tol, self.most, known)
 
 
 def _outcome(crossed, paths, step, bias, error):

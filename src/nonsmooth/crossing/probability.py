@@ -6,6 +6,7 @@ A threshold is a number b, for both sides, or a pair (lower, upper): see `thresh
 
 import inspect
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -25,8 +26,9 @@ from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
-from nonsmooth.errors import SceneError, ToleranceError, quoted
+from nonsmooth.errors import SceneError, answered, first_answer, quoted
 from nonsmooth.paths.sampling import PRECISIONS
+from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
 from nonsmooth.statistics.asymptotic_variance import limit_variance, stationary_mean
@@ -112,7 +114,8 @@ def crossing_probability(
         If an argument is out of range, the method unknown or without such a parameter, or if the
         asymptotic formula is asked for a g whose stationary mean is not 0.
     ToleranceError
-        If `tol` cannot be met, or a step is so long that halving it does not measure its bias.
+        If `tol` cannot be met, and then the best is its `result`; or if a step is so long that
+        halving it does not measure its bias.
     """
     require_random(scene)
     threshold = bounds(threshold)
@@ -123,22 +126,27 @@ def crossing_probability(
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
     attempts = _attempts(scene, horizons, p, given) if method is None else [(method, {})]
-    failed = {}
-    for name, limits in attempts:
-        try:
-            values, attributes = _by(name, given)(
-                scene, threshold, horizons, p, seed=seed, threads=threads, **given, **limits
-            )
-            break
-        except ToleranceError as error:
-            failed[name] = error
-    else:  # if all methods failed, the error of the deterministic one tells most
-        raise failed.get("deterministic", failed[name])
-    return xr.Dataset(
-        {name: ("horizon", value) for name, value in values.items()},
-        coords={"horizon": horizons},
-        attrs={"method": name} | attributes,
-    )
+
+    def attempt(name, limits):
+        solve = partial(_by(name, given), scene, threshold, horizons, p, seed=seed, threads=threads)
+        return answered(lambda: solve(**given, **limits), lambda found: (name, *found))
+
+    def solve():
+        return first_answer(
+            (partial(attempt, *one) for one in attempts),
+            error=lambda found: np.max(found[1]["probability_error"]),
+            good_enough=MONTE_CARLO.tolerance if tol is None else 0.0,
+        )
+
+    def present(found):
+        name, values, attributes = found
+        return xr.Dataset(
+            {name: ("horizon", value) for name, value in values.items()},
+            coords={"horizon": horizons},
+            attrs={"method": name} | attributes,
+        )
+
+    return answered(solve, present, tol_given=tol is not None)
 
 
 def _by(method, given):
@@ -165,7 +173,7 @@ def _attempts(scene, horizons, p, given):
         return [("monte_carlo", {})]
     tol = given.get("tol", default)
     attempts = [("deterministic", {})]
-    if tol >= choice.sampled_tolerance:
+    if tol >= choice.sampled_tolerance or "tol" not in given:
         attempts.append(("monte_carlo", {"most": choice.sampled_steps}))
     if "tol" not in given:
         return attempts
@@ -202,12 +210,19 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
 
 def _deterministic(scene, threshold, horizons, p, seed, threads, tol=None):
     lower, upper = np.sqrt(p) * np.array(threshold)
-    return deterministic_crossing(scene, lower, upper, p * horizons, tol), {}
+    return answered(lambda: deterministic_crossing(scene, lower, upper, p * horizons, tol), _values)
 
 
 def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
-    value, error = corrected_crossing(scene, threshold, horizons, p, order, tol, seed, threads)
-    return {"probability": value, "probability_error": error}, {}
+    return answered(
+        lambda: corrected_crossing(scene, threshold, horizons, p, order, tol, seed, threads),
+        lambda found: _values({"probability": found[0], "probability_error": found[1]}),
+    )
+
+
+def _values(found):
+    """Return what a method returns that has no attributes."""
+    return found, {}
 
 
 # checks of the parameters that only some methods have

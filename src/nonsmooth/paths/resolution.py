@@ -52,19 +52,21 @@ def require_possible(
     what: str,
     tol: float,
     most: float = tuning.MONTE_CARLO.most_steps,
+    result: object = None,
 ) -> None:
     """Refuse a tolerance that would take more steps of all paths together than can be waited for.
 
     Raises
     ------
     ToleranceError
-        The message begins with `what`, such as the best value and its error.
+        The message begins with `what`, such as the best value and its error; it has the `result`.
     """
     if paths * steps > most:
         reachable = tol * math.sqrt(paths * steps / most)
         raise ToleranceError(
             f"{what}; tol = {tol:g} would take Monte Carlo {paths:.1e} paths of {steps:.1e} steps; "
-            f"use tol >= {reachable:.1g}"
+            f"use tol >= {reachable:.1g}",
+            result,
         )
 
 

@@ -3,11 +3,14 @@
 The method is chosen by the scene and the tolerance.
 """
 
+import math
 import time
+from collections.abc import Callable
+from functools import partial
 
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.estimate import Estimate
+from nonsmooth.errors import SceneError, answered, first_answer
+from nonsmooth.estimate import Estimate, not_negative
 from nonsmooth.line import quadrature
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.paths.tuning import MONTE_CARLO
@@ -15,8 +18,6 @@ from nonsmooth.scenes import symbols
 from nonsmooth.scenes.scene import Scene, require_scene
 from nonsmooth.statistics import gamma2_on_grids, tuning
 from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2, sampled_mean
-
-METHODS = ("deterministic", "monte_carlo")
 
 
 def asymptotic_variance(
@@ -33,11 +34,12 @@ def asymptotic_variance(
     scene : Scene
     tol : float, optional
         Requested relative error. Unless given, it is 1e-2 by Monte Carlo, and by the deterministic
-        method 1e-10, 1e-6, 2e-4 or 3e-3 for one to four state variables.
+        method 1e-10, 1e-6, 2e-4 or 3e-3 for one to four state variables; what misses these is
+        returned with a warning.
     method : {"deterministic", "monte_carlo"}, optional
         Unless given, the one that should be the faster for `tol`; with four variables and no
         `tol`, Monte Carlo. If it fails, the other method is tried, but Monte Carlo only if `tol`
-        is a percent or more.
+        is a percent or more, or not given and more accurate than what has been reached.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
@@ -55,7 +57,7 @@ def asymptotic_variance(
         If an argument is out of range, there is no such method, or g is a function of the noise
         alone.
     ToleranceError
-        If `tol` cannot be met; the message has the best value and its error.
+        If `tol` cannot be met; the best value is its `result`.
     """
     began = time.perf_counter()
     require_scene(scene)
@@ -64,32 +66,42 @@ def asymptotic_variance(
     seed, threads = require_seed(seed), require_threads(threads)
     if not scene.state:
         return Estimate(0.0, 0.0, "g is constant", time.perf_counter() - began)
-    failed = []
-    for name in _fastest_first(scene, tol) if method is None else [method]:
-        try:
-            if name == "monte_carlo":
-                accuracy = MONTE_CARLO.tolerance if tol is None else tol
-                value, error = sampled_gamma2(scene, accuracy, seed, threads)
-                solver = "Monte Carlo"
-            else:
-                value, error, solver = _deterministic(scene, tol)
-            return Estimate(value, error, solver, time.perf_counter() - began)
-        except ToleranceError as refused:
-            failed.append(refused)
-    raise failed[0]
+    ways = _fastest_first(scene, tol) if method is None else [method]
+
+    def solve():
+        return first_answer(
+            (partial(METHODS[name], scene, tol, seed, threads) for name in ways),
+            error=lambda found: found[1] / found[0] if found[0] > 0 else math.inf,
+            good_enough=MONTE_CARLO.tolerance if tol is None else 0.0,
+        )
+
+    def present(found):
+        value, error, solver = found
+        value, error = map(float, not_negative(value, error))
+        return Estimate(value, error, solver, time.perf_counter() - began)
+
+    return answered(solve, present, tol_given=tol is not None)
 
 
 def _fastest_first(scene, tol):
     if "y" not in scene.state:
         return ["monte_carlo"]
-    many = scene.dimension
-    tol = tuning.GAMMA2.tolerance[many - 1] if tol is None else tol
-    if tol >= tuning.GAMMA2.faster_sampled[many - 1]:
+    accuracy = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
+    if accuracy >= tuning.GAMMA2.faster_sampled[scene.dimension - 1]:
         return ["monte_carlo", "deterministic"]
-    return ["deterministic", "monte_carlo"] if tol >= MONTE_CARLO.tolerance else ["deterministic"]
+    either = tol is None or tol >= MONTE_CARLO.tolerance
+    return ["deterministic", "monte_carlo"] if either else ["deterministic"]
 
 
-def _deterministic(scene, tol):
+def _sampled(scene, tol, seed, threads):
+    accuracy = MONTE_CARLO.tolerance if tol is None else tol
+    return answered(
+        lambda: sampled_gamma2(scene, accuracy, seed, threads),
+        lambda found: (*found, "Monte Carlo"),
+    )
+
+
+def _deterministic(scene, tol, _seed, _threads):
     if "y" not in scene.state:
         raise SceneError(
             f"g = '{scene.observable}' is a function of the noise alone, which the solvers do not "
@@ -97,7 +109,9 @@ def _deterministic(scene, tol):
         )
     tol = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
     if not scene.is_line:
-        return *gamma2_on_grids.gamma2(scene, tol), "spectral elements"
+        return answered(
+            lambda: gamma2_on_grids.gamma2(scene, tol), lambda found: (*found, "spectral elements")
+        )
     if (
         scene.mechanics.is_dry_friction
         and scene.observable_expression == symbols.y
@@ -106,7 +120,12 @@ def _deterministic(scene, tol):
         value, error = friction_variance(scene.n, scene.damping)
         if error <= tol * value:  # for a tiny C_b the closed form loses its digits
             return value, error, "closed form"
-    return *quadrature.asymptotic_variance(scene, tol), "quadrature"
+    return answered(
+        lambda: quadrature.asymptotic_variance(scene, tol), lambda found: (*found, "quadrature")
+    )
+
+
+METHODS: dict[str, Callable] = {"deterministic": _deterministic, "monte_carlo": _sampled}
 
 
 def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = None) -> Estimate:

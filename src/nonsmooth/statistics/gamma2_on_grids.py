@@ -135,7 +135,10 @@ def gamma2_by_combination(scene: Scene, tol: float) -> tuple[float, float]:
         transitions make the equation ill-conditioned, their time scale.
     """
     if not math.isinf(scene.n):
-        return _combined(scene, tol)[:2]
+        value, error, grid, accuracy = _combined(scene, tol)
+        if not error <= tol * value:
+            _refuse(scene, grid, value, error, tol, accuracy)
+        return value, error
     chosen = tuning.GAMMA2_ON_GRIDS
     # the rates of convergence are n^(-1/2) where a wall is hit elastically, else 1/n
     elastic = scene.mechanics.in_potential
@@ -148,7 +151,8 @@ def gamma2_by_combination(scene: Scene, tol: float) -> tuple[float, float]:
     )
     rest = gap / ((10 if elastic else 100) - 1)
     value, error = value + rest, error + (0.2 if elastic else 1.0) * abs(rest)
-    require(error <= tol * value, value, error, tol)
+    if not error <= tol * value:
+        _refuse(scene.with_n(stiff), below, value, error, tol, accuracy)
     return value, error
 
 
@@ -182,11 +186,7 @@ def _combined(scene, tol):
         return combination.value <= bound < math.inf and bound <= chosen.vanishing * terms()
 
     _enlarge(combination, error, tol, grid_tuning.TENSOR_GRIDS.largest[count], vanishes)
-    value, reached = combination.value, error(combination)
-    best = grid(combination.dearest())
-    if not reached <= tol * value:
-        _refuse(scene, best, value, reached, tol, accuracy)
-    return value, reached, best, accuracy
+    return combination.value, error(combination), grid(combination.dearest()), accuracy
 
 
 def _enlarge(combination, error, tol, largest, vanishes):

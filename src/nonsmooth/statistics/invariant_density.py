@@ -16,7 +16,7 @@ from scipy.integrate import quad
 from scipy.ndimage import maximum_filter1d
 
 from nonsmooth.checks import require_list, require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError, quoted
+from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.estimate import not_negative
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.mesh.box import half_widths
@@ -42,7 +42,8 @@ def invariant_density(
         With a finite n: at n = inf mass concentrates on sets of measure zero.
     tol : float, optional
         Error allowed, relative to the largest value of each density. Unless given, it is 1e-8,
-        1e-6, 1e-2 or 5e-2 for one to four variables.
+        1e-6, 1e-2 or 5e-2 for one to four variables, and what misses that is returned with a
+        warning.
     points : dict, optional
         Maps the names of all variables of the state to points at which the densities are wanted;
         201 equidistant ones over the support unless given.
@@ -61,10 +62,11 @@ def invariant_density(
     SceneError
         If an argument is out of range, or n is infinite.
     ToleranceError
-        If `tol` cannot be met; the message has the error reached.
+        If `tol` cannot be met; the best densities are its `result`.
     """
     require_random(scene)
     _require_finite(scene)
+    tol_given = tol is not None
     tol = None if tol is None else require_tolerance(tol)
     points = None if points is None else _require_points(scene, points)
     tol = tuning.INVARIANT_DENSITY.tol[scene.dimension] if tol is None else tol
@@ -79,14 +81,21 @@ def invariant_density(
         points = _equidistant(grid.ends)
     names = [symbol.name for symbol in STATE_VARIABLES if symbol.name in scene.state]
     accuracy = tol * tuning.INVARIANT_DENSITY.residual
-    found, difference = _refined(
-        scene, grid, tol, lambda grid: densities_on(scene, grid, names, points, accuracy)
-    )
-    clipped = {key: not_negative(found[key], difference[key]) for key in found}
-    return _dataset(
-        {key: value for key, (value, _) in clipped.items()},
-        {key: np.max(error) + _outside(value, tol) for key, (value, error) in clipped.items()},
-        points,
+
+    def present(refined):
+        clipped = {key: not_negative(*both) for key, both in refined.items()}
+        return _dataset(
+            {key: value for key, (value, _) in clipped.items()},
+            {key: np.max(error) + _outside(value, tol) for key, (value, error) in clipped.items()},
+            points,
+        )
+
+    return answered(
+        lambda: _refined(
+            scene, grid, tol, lambda grid: densities_on(scene, grid, names, points, accuracy)
+        ),
+        present,
+        tol_given,
     )
 
 
@@ -130,8 +139,9 @@ def _refined(scene, grid, tol, solve):
 
     Returns
     -------
-    values, differences : dict
-        Of the last two grids.
+    dict
+        For each array the pair of its values on the last grid and of their differences to those on
+        the one before.
     """
 
     def difference(found):
@@ -146,13 +156,20 @@ def _refined(scene, grid, tol, solve):
         difference,
         met=lambda values, difference: relative(values, difference) <= tol,
     )
-    if result.met:
-        return result.value, result.error
-    reached = "unknown" if result.error is None else f"{relative(result.value, result.error):.1e}"
-    raise ToleranceError(
-        f"the invariant density has a relative error of {reached} on the finest grid, "
-        f"above tol = {tol:g}; loosen tol"
-    )
+    if result.error is None:
+        raise ToleranceError(
+            "the invariant density has an unknown error on the only affordable grid; loosen tol"
+        )
+    found = {key: (result.value[key], result.error[key]) for key in result.value}
+    if not result.met:
+        raise ToleranceError(
+            f"the invariant density, with values up to "
+            f"{max(np.max(value) for value in result.value.values()):.3g}, has a relative error of "
+            f"{relative(result.value, result.error):.1e} on the finest grid, above tol = {tol:g}; "
+            "loosen tol",
+            found,
+        )
+    return found
 
 
 def _affordable(scene: Scene, grid: Grid) -> Iterator[Grid]:
@@ -256,14 +273,18 @@ def bin_averages(
         return _averages_of_closed_form(scene, closed, edges)
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
     accuracy = tol * tuning.INVARIANT_DENSITY.residual
-    found, error = _refined(
-        scene, grid, tol, lambda grid: _averages_on(scene, grid, edges, accuracy)
+
+    def present(refined):
+        clipped = {name: not_negative(*both) for name, both in refined.items()}
+        return {
+            name: (value, _largest_near(error) + _outside(value, tol))
+            for name, (value, error) in clipped.items()
+        }
+
+    return answered(
+        lambda: _refined(scene, grid, tol, lambda grid: _averages_on(scene, grid, edges, accuracy)),
+        present,
     )
-    clipped = {name: not_negative(found[name], error[name]) for name in found}
-    return {
-        name: (value, _largest_near(error) + _outside(value, tol))
-        for name, (value, error) in clipped.items()
-    }
 
 
 def _largest_near(error):

@@ -177,7 +177,8 @@ def sampled_gamma2(
             raise ToleranceError(
                 f"gamma^2 = {found.gamma2:.1e} with an error of {error:.1e} may be 0, which it is "
                 "if int_0^t g stays bounded, as for g = y where the displacement is confined; "
-                "choose another observable, such as x"
+                "choose another observable, such as x",
+                (found.gamma2, error),
             )
         if met:
             break

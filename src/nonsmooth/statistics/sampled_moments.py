@@ -51,10 +51,10 @@ def sampled_moments(
     SceneError
         If the times do not increase from above 0.
     ToleranceError
-        If `tol` cannot be met; the message has the best value and its error.
+        If `tol` cannot be met; the best values and errors are its `result`.
     """
     times = require_increasing("times", times)
-    paths, step = MONTE_CARLO.pilot_paths, first_step(scene, times)
+    paths, step, excessive = MONTE_CARLO.pilot_paths, first_step(scene, times), None
     order = registry.scheme(scene).weak_order(scene)
     for attempt in range(MONTE_CARLO.attempts):
         run = simulate(
@@ -82,38 +82,59 @@ def sampled_moments(
             math.ceil(paths * min(rare, tuning.VARIANCE.more) ** 2),
         )
         step = refined_step(step, np.max(bias + spread), MONTE_CARLO.bias_aim * tol, order)
-        require_possible(
-            paths,
-            times[-1] / step,
-            f"v(tau)/tau = {float(run['variance'][-1]) / times[-1]:.3g} at tau = {times[-1]:g} has "
-            f"an error of {error:.1g}",
-            tol,
-            most,
-        )
-    if rare > 1:
+        try:
+            require_possible(
+                paths,
+                times[-1] / step,
+                f"v(tau)/tau = {float(run['variance'][-1]) / times[-1]:.3g} at tau = "
+                f"{times[-1]:g} has an error of {error:.1g}",
+                tol,
+                most,
+            )
+        except ToleranceError as refused:
+            excessive = str(refused)
+            break
+    if rare > 1:  # the error of a variance that rests on a few paths is not known
         raise ToleranceError(
-            f"v(tau)/tau = {size:.3g} at tau = {times[-1]:g} rests on the few of {paths} paths "
-            "that have moved; choose a longer time"
+            f"v(tau)/tau = {size:.3g} at tau = {times[-1]:g} rests on the few of "
+            f"{run.attrs['paths']} paths that have moved; choose a longer time"
         )
     mean, uncertain = stationary_mean(scene, labelled(seed, "stationary"), threads)
     w = run["mean"].values - mean * times
     w_error = np.abs(run["mean_bias"]) + np.hypot(run["mean_error"], run["mean_bias_error"])
     v, v_error = run["variance"].values, times * (bias + np.hypot(own, spread))
-    require_accuracy(times, v, times * (bias + MONTE_CARLO.sigmas * np.hypot(own, spread)), tol)
-    return np.array([w, v]), np.array([np.asarray(w_error) + uncertain * times, v_error])
+    found = np.array([w, v]), np.array([np.asarray(w_error) + uncertain * times, v_error])
+    if excessive:
+        raise ToleranceError(excessive, found)
+    bound = times * (bias + MONTE_CARLO.sigmas * np.hypot(own, spread))
+    require_accuracy(times, *found, bound, tol)
+    return found
 
 
-def require_accuracy(times: np.ndarray, v: np.ndarray, error: np.ndarray, tol: float) -> None:
-    """Refuse a v(tau) whose error, divided by tau, is above the tolerance.
+def require_accuracy(
+    times: np.ndarray, values: np.ndarray, errors: np.ndarray, bound: np.ndarray, tol: float
+) -> None:
+    """Refuse a v(tau) of which the bound of the error, divided by tau, is above the tolerance.
+
+    Parameters
+    ----------
+    times : numpy.ndarray, shape (t,)
+    values, errors : numpy.ndarray, shape (2, t)
+        Of w and of v.
+    bound : numpy.ndarray, shape (t,)
+        Of the error of v.
+    tol : float
 
     Raises
     ------
     ToleranceError
+        With the values and errors as its `result`.
     """
-    rate, rate_error = (part / np.where(times > 0, times, 1.0) for part in (v, error))
+    rate, rate_error = (part / np.where(times > 0, times, 1.0) for part in (values[1], bound))
     worst = int(np.argmax(rate_error))
     if not rate_error[worst] <= tol:
         raise ToleranceError(
             f"v(tau)/tau = {rate[worst]:.10g} at tau = {times[worst]:g} has an error of "
-            f"{rate_error[worst]:.1e}, above tol = {tol:g}; loosen tol"
+            f"{rate_error[worst]:.1e}, above tol = {tol:g}; loosen tol",
+            (values, errors),
         )

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse.linalg as spla
 
 from nonsmooth.checks import require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.solver import EVEN, ODD
@@ -23,15 +23,16 @@ from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.statistics import tuning
 
 
-def spectral_gap(scene: Scene, tol: float = 1e-6) -> Estimate:
+def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
     """Smallest real part of the non-zero eigenvalues of -A_n.
 
     Parameters
     ----------
     scene : Scene
         With one or two state variables and a finite n.
-    tol : float
-        Requested relative error.
+    tol : float, optional
+        Requested relative error; 1e-6 unless given, and what misses that is returned with a
+        warning.
 
     Returns
     -------
@@ -47,11 +48,20 @@ def spectral_gap(scene: Scene, tol: float = 1e-6) -> Estimate:
         If an argument is out of range, the state has more variables, or n is infinite and the state
         two variables.
     ToleranceError
-        If `tol` cannot be met; the message has the best value and its error.
+        If `tol` cannot be met; the best value is its `result`.
     """
     began = time.perf_counter()
     require_random(scene)
-    tol = require_tolerance(tol)
+    accuracy = tuning.SPECTRAL_GAP.tolerance if tol is None else require_tolerance(tol)
+
+    def present(found):
+        return Estimate(*found, "spectral elements", time.perf_counter() - began)
+
+    return answered(lambda: _gap(scene, accuracy), present, tol_given=tol is not None)
+
+
+def _gap(scene, tol):
+    """Find the gap and its error, refining until this is met."""
     if scene.is_line:
         levels, solve, box = _with_one_variable(scene)
     elif scene.dimension == 2 and not math.isinf(scene.n):
@@ -74,9 +84,10 @@ def spectral_gap(scene: Scene, tol: float = 1e-6) -> Estimate:
     if not refined.met:
         raise ToleranceError(
             f"the spectral gap {value:.10g} has an error of {own:.1e}, above tol = {tol:g} "
-            "relative; loosen tol"
+            "relative; loosen tol",
+            (value, own + beyond),
         )
-    return Estimate(value, own + beyond, "spectral elements", time.perf_counter() - began)
+    return value, own + beyond
 
 
 def _of_level(found):

@@ -74,6 +74,7 @@ class InvariantDensity:
 class SpectralGap:
     """The slowest eigenvalue."""
 
+    tolerance: float = 1e-6  # chosen: relative, unless given; it is reached in seconds
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
     fitted: int = 1  # chosen: level on which the box is fitted

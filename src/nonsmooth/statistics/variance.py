@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -14,7 +15,7 @@ from nonsmooth.checks import (
     require_threads,
     require_tolerance,
 )
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.estimate import not_negative
 from nonsmooth.line import eigenfunctions
 from nonsmooth.paths.tuning import MONTE_CARLO
@@ -42,7 +43,8 @@ def variance(
         tau >= 0, "1"; by Monte Carlo increasing and positive.
     tol : float, optional
         Requested absolute error of v(tau)/tau. Unless given, it is 1e-2 by Monte Carlo, and by the
-        deterministic method 1e-9 for one state variable and 1e-5 for two.
+        deterministic method 1e-9 for one state variable and 1e-5 for two; what misses these is
+        returned with a warning.
     method : {"deterministic", "monte_carlo"}, optional
         ``"deterministic"`` is possible for the state y with white noise, and for two state
         variables and a finite n. Unless a method is given, it is taken for these scenes, except
@@ -67,7 +69,7 @@ def variance(
         If an argument is out of range, or a deterministic solver is asked for and the scene has
         none.
     ToleranceError
-        If `tol` cannot be met; the message has the best value and its error.
+        If `tol` cannot be met; the best values are its `result`.
     """
     require_scene(scene)
     times = require_list("times", times)
@@ -95,12 +97,22 @@ def variance(
         except ToleranceError:
             pass
     if method == "monte_carlo" or solve is None:
-        tol = MONTE_CARLO.tolerance if tol is None else tol
-        return _dataset(times, *sampled_moments(scene, times, tol, seed, threads), "monte_carlo")
-    tol = tuning.VARIANCE.tolerance[scene.dimension - 1] if tol is None else tol
+        method, accuracy = "monte_carlo", MONTE_CARLO.tolerance if tol is None else tol
+        attempt = partial(sampled_moments, scene, times, accuracy, seed, threads)
+    else:
+        method = "deterministic"
+        accuracy = tuning.VARIANCE.tolerance[scene.dimension - 1] if tol is None else tol
+        attempt = partial(_solved, solve, scene, times, accuracy)
+    return answered(
+        attempt, lambda found: _dataset(times, *found, method), tol_given=tol is not None
+    )
+
+
+def _solved(solve, scene, times, tol):
+    """Solve for w and v, and refuse what is too inaccurate."""
     found, error = solve(scene, times, tol)
-    require_accuracy(times, found[1], error[1], tol)
-    return _dataset(times, found, error, "deterministic")
+    require_accuracy(times, found, error, error[1], tol)
+    return found, error
 
 
 def _dataset(times, found, error, method):

@@ -4,6 +4,7 @@ import errno
 import hashlib
 import sys
 import traceback
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Protocol
 
 import xarray as xr
 
-from nonsmooth.errors import NonsmoothError
+from nonsmooth.errors import AccuracyWarning, NonsmoothError
 from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
 from reproduction.jobs.files import write_whole
@@ -42,6 +43,8 @@ class Task(Protocol):
 def job(task: Task) -> Iterator[None]:
     """Run the body; its log has the traceback or, if all went well, the checksums of the output.
 
+    A result that misses the accuracy of its method ends it, like any error.
+
     Parameters
     ----------
     task : Task
@@ -53,7 +56,9 @@ def job(task: Task) -> Iterator[None]:
         With status 1 after a `NonsmoothError`, a full disk or a lack of memory, told in one line.
     """
     try:
-        yield
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", AccuracyWarning)
+            yield
     except BaseException as error:
         _record(task, traceback.format_exc())
         message = _message(error)

@@ -16,7 +16,7 @@ from nonsmooth.crossing.first_passage.problem import (
     LaplaceProblem,
 )
 from nonsmooth.crossing.first_passage.time_stepping import PlaneProblemInTime, UnstableError
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.kinetic import tail_descent
 from nonsmooth.line.potential import depth
 from nonsmooth.refine import until_agreement
@@ -49,7 +49,7 @@ def deterministic_crossing(
     SceneError
         If the scene is of another kind.
     ToleranceError
-        If `tol` is not met; the message has the error.
+        If `tol` is not met; the best is its `result`.
     """
     if scene.is_line:
         solve = _on_line
@@ -104,22 +104,24 @@ def _from_afar(scene, lower, upper, times, tol):
     passed = np.array([tail.law(t).passed(distance) for t in np.minimum(times, tail.flight)])
     error = np.full(len(times), neglected)
     late = times > tail.flight
-    if late.any() and 1 - tail.law(tail.flight).passed(distance) > neglected:
-        left = 1 - tail.law(tail.descent).passed(distance)
-        # half of the tolerance is kept for what is neglected
-        rest = refined(
-            LineProblemFromAfar(scene, lower, upper, tail),
-            times[late] - tail.descent,
-            tol / (2 * left),
-        )
-        passed[late] = 1 - left * rest["survival"]
-        error[late] += 2 * left * rest["probability_error"]
-    return {
-        "probability": passed,
-        "probability_error": error,
-        "survival": 1 - passed,
-        "survival_error": error,
-    }
+    left = 1 - tail.law(tail.descent).passed(distance)
+
+    def whole(rest):
+        if rest is not None:
+            passed[late] = 1 - left * rest["survival"]
+            error[late] += 2 * left * rest["probability_error"]
+        return {
+            "probability": passed,
+            "probability_error": error,
+            "survival": 1 - passed,
+            "survival_error": error,
+        }
+
+    if not late.any() or 1 - tail.law(tail.flight).passed(distance) <= neglected:
+        return whole(None)
+    problem = LineProblemFromAfar(scene, lower, upper, tail)
+    # half of the tolerance is kept for what is neglected
+    return answered(lambda: refined(problem, times[late] - tail.descent, tol / (2 * left)), whole)
 
 
 def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict[str, np.ndarray]:
@@ -141,7 +143,7 @@ def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict
     Raises
     ------
     ToleranceError
-        If `tol` is not met; the message has the error.
+        If `tol` is not met; the best is its `result`.
     """
     settings, refinement = problem.settings, _Refinement(problem, times, tol)
     result = until_agreement(
@@ -151,18 +153,22 @@ def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict
         refinement.met,
         refinement.hopeless,
     )
-    if not result.met:
-        raise ToleranceError(
-            f"the crossing probability has an error of {result.error.max():.1e}, above tol = "
-            f"{tol:g}; {settings.advice}"
-        )
     solution = np.clip(result.value[0], 0.0, 1.0)
-    return {
+    found = {
         "probability": solution[0],
         "probability_error": result.error[0],
         "survival": solution[1],
         "survival_error": result.error[1],
     }
+    if not result.met:
+        worst = int(np.argmax(result.error.max(axis=0)))
+        raise ToleranceError(
+            f"W = {solution[0, worst]:.7g} at t = {times[worst]:g} has an error of "
+            f"{result.error.max():.1e}, above tol = "
+            f"{tol:g}; {settings.advice}",
+            found,
+        )
+    return found
 
 
 def _solver(problem: FirstPassageProblem, times: np.ndarray) -> Solver:

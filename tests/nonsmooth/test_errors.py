@@ -1,0 +1,158 @@
+"""Refusals keep what they have; without a tolerance it is returned with a warning."""
+
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import AccuracyWarning, ToleranceError, answered, first_answer
+from references import FRICTION
+
+
+def refusal(result):
+    """Return an attempt that misses its tolerance."""
+
+    def attempt():
+        raise ToleranceError("2 has an error of 1", result)
+
+    return attempt
+
+
+def test_what_is_found_is_presented():
+    """Whether or not somebody asked for the tolerance."""
+    assert [answered(lambda: 2, str, given) for given in (True, False)] == ["2", "2"]
+
+
+def test_a_refusal_keeps_the_answer():
+    """In the form in which it would have been returned."""
+    with pytest.raises(ToleranceError, match=r"^2 has an error of 1$") as refused:
+        answered(refusal(2), str)
+    assert refused.value.result == "2"
+
+
+def test_without_a_tolerance_the_answer_comes_with_a_warning():
+    """And the warning says what the error would have said."""
+    with pytest.warns(AccuracyWarning, match="2 has an error of 1; it is returned, because"):
+        assert answered(refusal(2), str, tol_given=False) == "2"
+
+
+def test_nothing_known_is_an_error_also_without_a_tolerance():
+    """There is nothing to return."""
+    with pytest.raises(ToleranceError):
+        answered(refusal(None), str, tol_given=False)
+
+
+@pytest.mark.parametrize(("results", "best"), [([3, 1, 2], 1), ([None, 2], 2), ([None], None)])
+def test_the_best_of_several_refusals(results, best):
+    """The one with the smallest error; what knows nothing is worst."""
+    with pytest.raises(ToleranceError) as refused:
+        first_answer(map(refusal, results), error=float)
+    assert refused.value.result == best
+
+
+def test_attempts_end_at_the_first_answer_or_one_that_is_good_enough():
+    """The next are not made."""
+    attempts = iter([refusal(None), lambda: 5, refusal(1)])
+    assert first_answer(attempts, error=float) == 5
+    assert len(list(attempts)) == 1
+    attempts = iter([refusal(3), refusal(2), refusal(1)])
+    with pytest.raises(ToleranceError):
+        first_answer(attempts, error=float, good_enough=2)
+    assert len(list(attempts)) == 1
+
+
+LANGEVIN = ns.Scene("friction", "langevin")
+# what is asked for a tolerance out of reach, and a call that says what is right
+OUT_OF_REACH = {
+    "gamma^2 by quadrature": (
+        lambda: ns.asymptotic_variance(ns.Scene("friction", observable="abs(y)"), tol=1e-29),
+        lambda: ns.asymptotic_variance(ns.Scene("friction", observable="abs(y)")),
+    ),
+    "gamma^2 by Monte Carlo": (
+        lambda: ns.asymptotic_variance(
+            ns.Scene("obstacle", potential="x**2/2", damping=9.0), tol=0.5, method="monte_carlo"
+        ),
+        lambda: ns.Estimate(0.0, 0.0, "", 0.0),
+    ),
+    "kappa": (
+        lambda: ns.extrapolation_length(FRICTION, tol=1e-20),
+        lambda: ns.extrapolation_length(FRICTION),
+    ),
+    "gap": (lambda: ns.spectral_gap(FRICTION, tol=1e-20), lambda: ns.spectral_gap(FRICTION)),
+}
+
+
+@pytest.mark.parametrize("name", OUT_OF_REACH)
+def test_refused_estimates_are_right(name):
+    """Within the errors of both; those of Monte Carlo five times (a false alarm in 10^6)."""
+    refused, right = OUT_OF_REACH[name]
+    with pytest.raises(ToleranceError) as refusal:
+        refused()
+    best, reference = refusal.value.result, right()
+    assert isinstance(best, ns.Estimate)
+    times = 5 if best.method == "Monte Carlo" else 1
+    assert abs(best.value - reference.value) <= times * best.error + reference.error
+
+
+REFUSED_DATASETS = {
+    "v": (
+        lambda **given: ns.variance(FRICTION, [1.0, 5.0], **given),
+        1e-25,
+        "v",
+    ),
+    "v by Monte Carlo": (
+        lambda **given: ns.variance(FRICTION, [1.0, 5.0], method="monte_carlo", **given),
+        1e-7,
+        "v",
+    ),
+    "W": (lambda **given: ns.crossing_probability(FRICTION, 0.6, [2.0], **given), 1e-16, None),
+    "W from afar": (
+        lambda **given: ns.crossing_probability(
+            FRICTION.with_start({"y": 6.0}), 3.0, [1.0], **given
+        ),
+        1e-12,
+        None,
+    ),
+    "W by Monte Carlo": (
+        lambda **given: ns.crossing_probability(
+            FRICTION, 0.6, [2.0], method="monte_carlo", **given
+        ),
+        1e-7,
+        None,
+    ),
+    "W by the corrected formula": (
+        lambda **given: ns.crossing_probability(FRICTION, 0.6, [2.0], p=100, order=3, **given),
+        1e-12,
+        None,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED_DATASETS)
+def test_refused_datasets_are_right(name):
+    """They are what the default returns, within the errors of both (five standard errors)."""
+    ask, tol, variable = REFUSED_DATASETS[name]
+    variable = variable or "probability"
+    with pytest.raises(ToleranceError) as refused:
+        ask(tol=tol)
+    best, usual = refused.value.result, ask()
+    assert best.attrs["method"] == usual.attrs["method"]
+    distance = abs(best[variable] - usual[variable])
+    bias = sum(abs(found.get("step_bias", 0.0)) for found in (best, usual))
+    errors = best[f"{variable}_error"] + usual[f"{variable}_error"]
+    times = 5 if usual.attrs["method"] == "monte_carlo" else 1
+    assert (distance <= times * errors + 2 * bias).all()
+
+
+def test_densities_that_miss_the_tolerance_are_kept():
+    """On one grid more they change by less than stated."""
+    with pytest.raises(ToleranceError, match="values up to") as refused:
+        ns.invariant_density(ns.Scene("elasto_plastic", potential="x**2/2", n=10), tol=1e-12)
+    found = refused.value.result
+    assert {"density_y", "density_x_error", "density_y_x"} <= set(found.variables)
+
+
+def test_the_default_is_answered_with_a_warning():
+    """Without tol, what a solver misses is returned; and what is stated holds."""
+    scene = ns.Scene("elasto_plastic", potential="x**2/2", n=3000.0)
+    with pytest.warns(AccuracyWarning, match="because no tol was given"):
+        found = ns.invariant_density(scene)
+    assert found.density_x_error > 1e-6 * found.density_x.max()
