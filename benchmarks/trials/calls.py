@@ -2,21 +2,28 @@
 
 `python -m benchmarks.trials.calls [calls] [seed] [file]` makes calls (1000 unless given): each
 argument of each function in turn replaced by an odd value, random pairs of such arguments, and
-scenes with extreme but legal parameters. Two processes make them, and each call is killed after
-30 seconds of a processor. A call ends well if it returns something sensible, or is refused by a
-`NonsmoothError` in one line of at most 300 characters. Everything else is printed, once for each
-place that it comes from: other exceptions, warnings, calls without end, and nonsense such as a
-variance that is negative or not a number. The exit code is then 1. With a file, results are
-appended to it, and calls that it has are not repeated.
+scenes with extreme but legal parameters. Two processes make them, where simulations are limited to
+an estimated 5 seconds. A call ends well if it returns something sensible, or is refused by a
+`NonsmoothError` in one line of at most 300 characters. After 30 seconds of a processor it is sent
+Ctrl-C. If what it asks for is legal and without simulations, it may take that long: it has then
+ended well if a terminal would have shown how far it was, and it ends within two seconds. All
+others are killed. Everything else is printed, once for each place that it comes from: other
+exceptions, warnings, calls without end, and nonsense such as a variance that is negative or not a
+number. The exit code is then 1. With a file, results are appended to it, and calls that it has are
+not repeated.
 """
 
 import collections
 import contextlib
+import dataclasses
+import functools
 import io
 import json
 import multiprocessing
+import os
 import queue
 import resource
+import signal
 import sys
 import threading
 import time
@@ -35,13 +42,17 @@ import xarray as xr
 import nonsmooth as ns
 from benchmarks.trials import odd_values
 from nonsmooth.errors import AssumptionWarning
+from nonsmooth.paths import tuning
 
 SECONDS = 30.0
+SIMULATION = 5.0  # seconds that one may take by its estimate, which may be five times too low
+TO_END = 2.0  # seconds of each processor after Ctrl-C
+POLL = 0.1
 PATIENCE = 20  # times as long may a call take that waits for the processor
 WORKERS = 2
 LONGEST_MESSAGE = 300
 MEMORY = 8 * 2**30  # bytes of address space of a worker, so that none takes the whole machine
-WELL = ("fine", "refused")
+WELL = ("fine", "refused", "long")
 
 NAMES = {
     "ns": ns,
@@ -80,6 +91,12 @@ def scene_calls() -> list[str]:
     ]
 
 
+@functools.cache
+def long_calls() -> frozenset[str]:
+    """Return the questions asked of scenes that may take long, because nothing is wrong."""
+    return frozenset(call for call in scene_calls() if "monte_carlo" not in call)
+
+
 def pair_calls(count: int, rng: np.random.Generator) -> list[str]:
     """Random pairs of arguments replaced by odd values."""
     calls = []
@@ -106,8 +123,8 @@ def chosen_calls(count: int, seed: int) -> list[str]:
 def judged(call: str) -> dict:
     """Make a call and say how it ended: `outcome`, what was `told`, `place` and `seconds`."""
     began = time.process_time()
-    silent = contextlib.redirect_stderr(io.StringIO())  # of the progress of long runs
-    with silent, warnings.catch_warnings(record=True) as warned:
+    terminal = _Terminal()
+    with contextlib.redirect_stderr(terminal), warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         try:
             outcome, told, place = _of_result(call, eval(call, dict(NAMES)))
@@ -115,6 +132,9 @@ def judged(call: str) -> dict:
             told, place = str(error), _place(error)
             short = len(told.splitlines()) == 1 and len(told) <= LONGEST_MESSAGE
             outcome = "refused" if short else "long message"
+        except KeyboardInterrupt as error:
+            legal = call in long_calls() and terminal.getvalue()
+            outcome, told, place = "long" if legal else "too slow", "no answer", _place(error)
         except Exception as error:
             outcome, told, place = "raised", f"{type(error).__name__}: {error}", _place(error)
     unwanted = [w for w in warned if not issubclass(w.category, AssumptionWarning)]
@@ -124,6 +144,13 @@ def judged(call: str) -> dict:
         place = f"{Path(first.filename).name}:{first.lineno}"
     seconds = time.process_time() - began
     return {"call": call, "outcome": outcome, "told": told, "place": place, "seconds": seconds}
+
+
+class _Terminal(io.StringIO):
+    """Keeps what long runs show of their progress."""
+
+    def isatty(self):
+        return True
 
 
 def _place(error):
@@ -185,24 +212,32 @@ class _Worker:
         self.connection.recv()  # it is ready
 
     def judged(self, call):
-        """Hand a call over; if no answer comes in time, kill the process and start another."""
-        spent = self._seconds()
+        """Hand a call over; if no answer comes in time, press Ctrl-C, then kill the process."""
         self.connection.send(call)
+        found = {"call": call, "outcome": "too slow", "told": "no answer", "place": call}
+        found["seconds"] = SECONDS
         try:
-            # seconds of the processor, so that other work of the machine does not count
-            for _ in range(round(PATIENCE * SECONDS)):
-                if self.connection.poll(1.0):
-                    return self.connection.recv()
-                if self._seconds() - spent > SECONDS:
-                    break
-            outcome = "too slow"
+            if self._answers(SECONDS):
+                return self.connection.recv()
+            os.kill(self.process.pid, signal.SIGINT)
+            if self._answers(TO_END * psutil.cpu_count()):
+                found = self.connection.recv()
         except (EOFError, psutil.Error):
-            outcome = "died"
+            found["outcome"] = "died"
         self.process.kill()
         self.process.join()
         self.start()
-        told, place = "no answer", call
-        return {"call": call, "outcome": outcome, "told": told, "place": place, "seconds": SECONDS}
+        return found
+
+    def _answers(self, seconds):
+        """Whether an answer comes in time of the processor, whatever else the machine does."""
+        spent = self._seconds()
+        for _ in range(round(PATIENCE * seconds / POLL)):
+            if self.connection.poll(POLL):
+                return True
+            if self._seconds() - spent > seconds:
+                return False
+        return False
 
     def _seconds(self):
         times = psutil.Process(self.process.pid).cpu_times()
@@ -212,6 +247,8 @@ class _Worker:
 def _serve(connection):
     """Judge the calls that arrive, in a process of its own."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    tuning.COST = dataclasses.replace(tuning.COST, longest_run=SIMULATION / 3600)
     scene = ns.Scene("friction")
     ns.simulate(scene, horizon=1.0, step=0.1, paths=8, threads=1)  # compiles, or loads what is
     connection.send("ready")

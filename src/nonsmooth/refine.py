@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from operator import length_hint
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from scipy.sparse.linalg import ArpackError
 
 from nonsmooth.errors import ToleranceError
+from nonsmooth.interruption import interruptible
 from nonsmooth.progress import counter
 
 
@@ -67,19 +69,27 @@ def until_agreement(
     Raises
     ------
     ToleranceError
-        If the equations of the first or second level are singular in double precision.
+        If the equations of the first or second level are singular in double precision, or the
+        memory does not hold them.
     """
     solutions, estimate = [], None
     with counter("levels of resolution", length_hint(levels)) as advance:
         for level in levels:
             try:
-                solutions.append(solve(level))
+                solutions.append(interruptible(partial(solve, level)))
             except (np.linalg.LinAlgError, ArpackError) as error_of_library:
                 if estimate is not None:  # what the levels before have found remains
                     break
                 raise ToleranceError(
                     f"the equations are singular in double precision ({error_of_library}); give "
                     "parameters of more similar sizes or use Monte Carlo"
+                ) from None
+            except MemoryError:
+                if estimate is not None:
+                    break
+                raise ToleranceError(
+                    "the memory does not hold the equations; choose a larger tol, parameters of "
+                    "more similar sizes or Monte Carlo, or free memory"
                 ) from None
             advance(1)
             if len(solutions) < 2:

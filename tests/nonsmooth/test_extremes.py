@@ -132,6 +132,7 @@ print("begun", flush=True)
 CALLS = {
     "many short blocks": "ns.simulate(scene, 1e4, step=0.01, paths=10**6)",
     "one long path": "ns.simulate(scene, 1e7, step=0.01, paths=1, times=[1e7], keep='paths')",
+    "dense eigenproblems": "ns.extrapolation_length(scene, tol=1e-9)",
     "levels of grids": "ns.asymptotic_variance(scene, tol=1e-9, method='deterministic')",
 }
 

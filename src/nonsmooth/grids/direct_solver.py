@@ -1,8 +1,6 @@
 """The Poisson equation on tensor grids with up to two variables, by sparse factorisation."""
 
-import threading
 from collections.abc import Mapping
-from concurrent.futures import Future
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +11,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.interruption import interruptible
 from nonsmooth.scenes.scene import Scene
 
 
@@ -25,7 +24,7 @@ def factorise(matrix: sp.sparray) -> spla.SuperLU:
         If the memory does not hold the factors.
     """
     try:
-        return _interruptible(
+        return interruptible(
             lambda: spla.splu(
                 matrix.tocsc(),
                 permc_spec="MMD_AT_PLUS_A",
@@ -38,25 +37,6 @@ def factorise(matrix: sp.sparray) -> spla.SuperLU:
             f"the memory does not hold the factors of {matrix.shape[0]} equations; choose a larger "
             "tol or Monte Carlo, or free memory"
         ) from None
-
-
-def _interruptible(call):
-    """Call a function in another thread and wait for it, so that Ctrl-C need not.
-
-    Python looks for Ctrl-C between two of its own instructions, and not within a call of a
-    compiled library. After Ctrl-C the call goes on until it is done or the program ends, and its
-    result is dropped. It must release Python's global lock, as scipy's sparse factorisation does.
-    """
-    result: Future = Future()
-
-    def run():
-        try:
-            result.set_result(call())
-        except BaseException as error:
-            result.set_exception(error)
-
-    threading.Thread(target=run, daemon=True).start()
-    return result.result()
 
 
 class _Factors:

@@ -16,6 +16,8 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 from scipy.special import roots_jacobi
 
+from nonsmooth.errors import ToleranceError
+
 
 @dataclass(frozen=True)
 class Axis:
@@ -123,10 +125,22 @@ def summed(blocks: Iterable[np.ndarray]) -> np.ndarray:
     Returns
     -------
     numpy.ndarray, shape (e d + 1, e d + 1)
+
+    Raises
+    ------
+    ToleranceError
+        If the memory does not hold it.
     """
     blocks = list(blocks)
     degree = len(blocks[0]) - 1
-    matrix = np.zeros((len(blocks) * degree + 1,) * 2)
+    size = len(blocks) * degree + 1
+    try:
+        matrix = np.zeros((size, size))
+    except MemoryError:
+        raise ToleranceError(
+            f"the memory does not hold a matrix of {size} equations; choose parameters of more "
+            "similar sizes, a larger tol or Monte Carlo"
+        ) from None
     for e, block in enumerate(blocks):
         here = slice(e * degree, (e + 1) * degree + 1)
         matrix[here, here] += block

@@ -48,6 +48,9 @@ class Elements:
     depth: float = 20.0
     bend: float = 1.0  # chosen: temperatures by which a potential may bend in an element
     samples: int = 16  # chosen: points of an element at which the bend is measured
+    # chosen: temperatures by which it bends in a part of an element, beyond which no degree that
+    # can be afforded resolves its density
+    steepest: float = 1e3
     most_parts: int = 9  # chosen: into which an element is split for the bend; bounds the cost
 
 

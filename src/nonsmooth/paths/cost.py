@@ -16,7 +16,7 @@ def require_time(steps: float, sampling: Sampling) -> None:
     steps : float
         Number of steps of each path.
     sampling : Sampling
-        Number of paths and threads.
+        Number of paths and threads, and the precision.
 
     Raises
     ------
@@ -25,7 +25,8 @@ def require_time(steps: float, sampling: Sampling) -> None:
     chosen = tuning.COST
     blocks = -(-sampling.paths // BLOCK)
     threads = min(sampling.workers, blocks)
-    work = steps * (blocks * chosen.block_step + sampling.paths * chosen.path_step)
+    path_step = chosen.path_step[sampling.precision]
+    work = steps * (blocks * chosen.block_step + sampling.paths * path_step)
     hours = float(work / threads / 3600)
     if hours > chosen.longest_run:
         raise ToleranceError(

@@ -3,7 +3,8 @@
 Each number has a line that says what it is and where it comes from.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -104,9 +105,11 @@ class Cost:
     # chosen: hours; a run that takes longer should be several runs whose results are kept
     longest_run: float = 100.0
     # fitted: seconds of one step of a block with hardly any paths, and of one step of one path more
-    # in single precision, both in the fastest scenes
+    # by precision, all in the fastest scenes
     block_step: float = 5e-8
-    path_step: float = 1e-9
+    path_step: Mapping[str, float] = field(
+        default_factory=lambda: {"float32": 1e-9, "float64": 1.5e-8}
+    )
     # chosen: largest number of steps of a path, beyond which their count is not exact
     most_steps: float = 1e15
 

@@ -9,6 +9,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Collection, Iterable
+from contextlib import contextmanager
 from functools import lru_cache
 
 import numpy as np
@@ -131,6 +132,8 @@ class _Reader:
         self._constants = ConstantParts()
         self._operations = self._compared = 0
         self._within = self._operations_within = 0  # arguments of max and min
+        self._nested = 0  # functions and powers around what is read
+        self._operations_nested = 0  # in the outermost of them
 
     def expression(self, tree):
         return sympy.sympify(self._read(tree, 0))  # a number or an expression, never text
@@ -148,17 +151,36 @@ class _Reader:
                 return self._checked(
                     _OPERATIONS[type(node.op)](self._read(node.operand, depth + 1))
                 )
+            case ast.BinOp(op=ast.Pow()):
+                self._count()
+                with self._deeper():
+                    return self._checked(self._operation(node, depth))
             case ast.BinOp() if type(node.op) in _OPERATIONS:
                 self._count()
                 return self._checked(self._operation(node, depth))
             case ast.Call(func=ast.Name(), keywords=[]):
                 self._count()
-                return self._checked(self._call(node, depth))
+                with self._deeper():
+                    return self._checked(self._call(node, depth))
             case ast.Call(keywords=[]):
                 raise ExpressionError(
                     f"{self._quoted(node.func)} is no function; for a product write *"
                 )
         raise ExpressionError(f"{self._quoted(node)} is not arithmetic; {_EXAMPLE}")
+
+    @contextmanager
+    def _deeper(self):
+        """Read a function or a power, whose arguments may have others."""
+        if not self._nested:
+            self._operations_nested = 0
+        self._nested += 1
+        if self._nested > tuning.FORMULA.nested:
+            raise ExpressionError(
+                f"it has more than {tuning.FORMULA.nested} functions and powers within one "
+                "another; simplify it"
+            )
+        yield
+        self._nested -= 1
 
     def _quoted(self, node):
         return quoted(ast.get_source_segment(self._line, node), _PART)
@@ -168,6 +190,12 @@ class _Reader:
         if self._operations > tuning.FORMULA.operations:
             raise ExpressionError(
                 f"it has more than {tuning.FORMULA.operations} operations; simplify it"
+            )
+        self._operations_nested += self._nested > 0
+        if self._operations_nested > tuning.FORMULA.operations_nested:
+            raise ExpressionError(
+                "the arguments of one of its functions or powers have more than "
+                f"{tuning.FORMULA.operations_nested} operations; simplify them"
             )
         self._operations_within += self._within > 0
         if self._operations_within > tuning.FORMULA.operations_compared:

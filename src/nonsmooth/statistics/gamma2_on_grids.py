@@ -185,15 +185,18 @@ def _combined(scene, tol):
         bound = error(combination)
         return combination.value <= bound < math.inf and bound <= chosen.vanishing * terms()
 
-    _enlarge(combination, error, tol, grid_tuning.TENSOR_GRIDS.largest[count], vanishes)
+    largest = grid_tuning.TENSOR_GRIDS.largest[count]
+    _enlarge(combination, error, tol, largest, vanishes, 1 + len(directions))
     return combination.value, error(combination), grid(combination.dearest()), accuracy
 
 
-def _enlarge(combination, error, tol, largest, vanishes):
+def _enlarge(combination, error, tol, largest, vanishes, patience):
     """Add grids to a combination until its error is small enough, or there is no hope of that.
 
-    There is none if nothing affordable is left, or gamma^2 is 0.
+    There is none if nothing affordable is left, gamma^2 is 0, or no digit is right and refining
+    every variable has not made the error smaller.
     """
+    least, stalled = math.inf, 0
     left = tuning.GAMMA2_ON_GRIDS.work * largest
     with counter("grids") as advance:
         while not (error(combination) <= tol * combination.value or vanishes(combination)):
@@ -202,7 +205,10 @@ def _enlarge(combination, error, tol, largest, vanishes):
             except ToleranceError:  # a finer grid on which the iteration does not converge
                 return
             left -= cost
-            if not cost:
+            reached = error(combination)
+            stalled = 0 if reached < least else stalled + 1
+            least = min(least, reached)
+            if not cost or (stalled >= patience and reached > abs(combination.value)):
                 return
             advance(1)
 

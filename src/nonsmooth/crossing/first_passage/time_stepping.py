@@ -167,10 +167,11 @@ class _SplitStep:
     def __init__(self, grid: PlaneOrdinates, interval: _Interval, step: float):
         self.step = step
         self.many = len(grid.speeds)
-        self.mixing = {
-            parity: scipy.linalg.expm(step * grid.generator[parity].toarray())
-            for parity in (EVEN, ODD)
-        }
+        with np.errstate(over="ignore", invalid="ignore"):  # is found to be unstable
+            self.mixing = {
+                parity: scipy.linalg.expm(step * grid.generator[parity].toarray())
+                for parity in (EVEN, ODD)
+            }
         speeds, self._which = np.unique(
             np.round(grid.speeds / np.max(np.abs(grid.speeds)), 12), return_inverse=True
         )

@@ -30,6 +30,11 @@ def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
     -------
     dict
         Maps the symbols of the state to half widths, "1".
+
+    Raises
+    ------
+    SceneError
+        If the invariant density of the noise is not known, or the displacement is not held.
     """
     ends, noise = {}, scene.noise
     if noise.kind == "white":
@@ -118,13 +123,20 @@ def _of_displacement(scene, speed, forcing):
     """Half width of the displacement, given those of the velocity and of the forcing."""
     search = tuning.BOX
     kink, _, outer = scene.mechanics.penalty.at(scene.n)
-    if scene.mechanics.is_plastic:  # farther out the drift leads inward, for every velocity
-        return kink + search.spare * speed / outer
     # the potential energy there is the kinetic energy of the fastest velocity
     reach = np.geomspace(*search.displacements)
     U = vectorised(scene.potential_expression, (x,))
-    height = np.minimum(U(reach), U(-reach)) - min(U(reach).min(), U(-reach).min())
-    free = _last_below(reach, height, speed**2 / 2 + forcing)
+    height, allowed = np.minimum(U(reach), U(-reach)), speed**2 / 2 + forcing
+    free = _last_below(reach, height - height.min(), allowed)
+    if scene.mechanics.is_plastic:  # farther out the drift leads inward, for every velocity
+        return kink + search.spare * min(speed / outer, free)
+    if scene.mechanics.in_potential:
+        height = height + outer / 2 * np.maximum(reach - kink, 0.0) ** 2
+    if height[-1] - height.min() <= allowed:
+        raise SceneError(
+            f"the potential does not hold the displacement within {reach[-1]:g}; choose one that "
+            "rises faster far out, a larger n or Monte Carlo"
+        )
     if scene.mechanics.in_potential:
         return min(free, kink + speed / math.sqrt(outer) + forcing / outer)
     return free

@@ -6,6 +6,7 @@ import numpy as np
 import sympy
 from sympy import Symbol
 
+from nonsmooth.errors import SceneError
 from nonsmooth.grids import tuning
 from nonsmooth.grids.grading import geometric, layers, mirrored, split
 from nonsmooth.scenes.formulas import vectorised
@@ -178,6 +179,11 @@ def resolving(edges: np.ndarray, potential: Callable, temperature: float) -> np.
     Returns
     -------
     numpy.ndarray
+
+    Raises
+    ------
+    SceneError
+        If the potential varies too much to be resolved.
     """
     chosen = tuning.ELEMENTS
     place = np.linspace(0, 1, chosen.samples + 1)
@@ -188,6 +194,11 @@ def resolving(edges: np.ndarray, potential: Callable, temperature: float) -> np.
     lowest = bend.min(axis=1)
     excess = np.maximum(bend.max(axis=1) - lowest, -lowest) / temperature
     excess = np.maximum(excess, excess[::-1])  # rounding must not make the mesh asymmetric
+    if not excess.max() <= chosen.steepest * chosen.most_parts**2:
+        raise SceneError(
+            f"a potential bends by {excess.max():.0e} temperatures within one element of the grid, "
+            "which none can resolve; choose one that varies less or Monte Carlo"
+        )
     parts = np.sqrt(np.clip(excess / chosen.bend, 1, chosen.most_parts**2))
     parts = np.ceil(parts - 1e-6).astype(int)
     parts += 1 - parts % 2  # odd, so that an even number of nodes stays even
