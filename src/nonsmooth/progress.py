@@ -1,12 +1,18 @@
-"""Bars that show how far a long computation is.
+"""Bars that show how far a long computation is, and calls during which Ctrl-C is heard.
 
-They go to the standard error, only if that is a terminal or the program runs in a notebook, and
+Bars go to the standard error, only if that is a terminal or the program runs in a notebook, and
 only after a second. Logs and tests see none.
 """
 
+import contextvars
 import sys
+import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import AbstractContextManager, contextmanager
+from typing import TypeVar
+
+Result = TypeVar("Result")
 
 DELAY = 1.0  # seconds; what is over sooner needs no bar
 
@@ -47,3 +53,34 @@ def _shown(what: str, total: float | None, shape: str) -> Iterator[Callable[[flo
 
     with tqdm(desc=what, total=total, delay=DELAY, leave=False, bar_format=shape) as drawn:
         yield drawn.update
+
+
+def interruptible(call: Callable[[], Result]) -> Result:
+    """Call a function in another thread and wait for it, so that Ctrl-C need not.
+
+    Python looks for Ctrl-C between two of its own instructions, and not within a call of a compiled
+    library. The call must release Python's global lock where it takes long, as the sparse
+    factorisation of scipy and the linear algebra of numpy do; most of that of scipy does not. After
+    Ctrl-C the call goes on until it is done or the program ends, and its result is dropped.
+
+    Parameters
+    ----------
+    call : callable
+        Takes nothing.
+
+    Returns
+    -------
+    object
+        What the call returns; what it raises is raised here.
+    """
+    result: Future = Future()
+    context = contextvars.copy_context()  # has numpy's treatment of overflow
+
+    def run():
+        try:
+            result.set_result(context.run(call))
+        except BaseException as error:
+            result.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()
+    return result.result()

@@ -10,8 +10,7 @@ import numpy as np
 from scipy.sparse.linalg import ArpackError
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.interruption import interruptible
-from nonsmooth.progress import counter
+from nonsmooth.progress import counter, interruptible
 
 
 @dataclass(frozen=True)

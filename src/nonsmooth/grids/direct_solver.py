@@ -11,7 +11,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.interruption import interruptible
+from nonsmooth.progress import interruptible
 from nonsmooth.scenes.scene import Scene
 
 

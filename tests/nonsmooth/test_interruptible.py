@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import pytest
 
-from nonsmooth.interruption import interruptible
+from nonsmooth.progress import interruptible
 
 
 def test_the_result_is_that_of_the_call():
