@@ -1,10 +1,11 @@
 # `make help` lists the targets
 PYTHON ?= python3
+PIP := -m pip --disable-pip-version-check --quiet install --require-hashes
 VENV := .venv
 BIN := $(VENV)/bin
 CORES ?= 2
 
-.PHONY: help env paper smoke test test-slurm lint format docs benchmark requests peers diagrams verify publish checkers crate lock clean
+.PHONY: help env paper smoke test test-all test-slurm lint format docs benchmark requests peers diagrams verify publish checkers crate lock clean
 .DEFAULT_GOAL := help
 
 help: ## list the targets
@@ -18,16 +19,18 @@ smoke: env ## every rule at reduced sizes, into results/smoke
 	$(BIN)/python -m workflow.unlock
 	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml -- all speed_against_error
 
-test: env ## the tests, a reduced run of the whole workflow among them
-	$(BIN)/python -m pytest
+test: env ## the tests but the slowest, a reduced run of the whole workflow among them
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+
+test-all: env ## all tests
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 test-slurm: .venv-slurm/installed ## the reduced run through Slurm gives the same bytes; starts a node if there is none
 	.venv-slurm/bin/python -m tests.slurm.trial
 
 .venv-slurm/installed: environment-lock.txt workflow/envs/slurm-lock.txt pyproject.toml
-	$(PYTHON) -m venv .venv-slurm
-	.venv-slurm/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r environment-lock.txt -r workflow/envs/slurm-lock.txt
-	.venv-slurm/bin/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(call environment,.venv-slurm,-r environment-lock.txt -r workflow/envs/slurm-lock.txt)
+	.venv-slurm/bin/python -m pip install --disable-pip-version-check --quiet --no-deps --no-build-isolation --editable .
 	touch $@
 
 lint: env ## style and structure of the sources
@@ -65,13 +68,19 @@ diagrams: env ## measure speed against error anew, and refresh the copies in doc
 	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_gamma2 measure_pathwise measure_cost -- speed_against_error
 	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
 
+# uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute
+define environment
+$(PYTHON) -m venv $(1)
+$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
+endef
+
 env: $(VENV)/installed ## the environment alone, in .venv
 
 $(VENV)/installed: environment-lock.txt pyproject.toml
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'nonsmooth needs Python >= 3.11; set PYTHON=python3.11 or newer')"
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r environment-lock.txt
-	$(BIN)/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(call environment,$(VENV),-r environment-lock.txt)
+	$(BIN)/python -m pip install --disable-pip-version-check --quiet --no-deps --no-build-isolation --editable .
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m nonsmooth
 	touch $@
 
 # the manual has an environment of its own
@@ -81,16 +90,14 @@ docs: env .venv-docs/installed ## build the manual, docs/_build/html/index.html
 	.venv-docs/bin/python -m sphinx -W --keep-going -n -q -b html docs docs/_build/html
 
 .venv-docs/installed: docs/environment-lock.txt pyproject.toml
-	$(PYTHON) -m venv .venv-docs
-	.venv-docs/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r docs/environment-lock.txt
-	.venv-docs/bin/python -m pip install --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(call environment,.venv-docs,-r docs/environment-lock.txt)
+	.venv-docs/bin/python -m pip install --disable-pip-version-check --quiet --no-deps --no-build-isolation --editable .
 	touch $@
 
 checkers: .venv-checkers/installed ## the environment that checks CF conventions and provenance
 
 .venv-checkers/installed: workflow/envs/checkers-lock.txt
-	$(PYTHON) -m venv .venv-checkers
-	.venv-checkers/bin/python -m pip install --disable-pip-version-check --progress-bar off --require-hashes -r workflow/envs/checkers-lock.txt
+	$(call environment,.venv-checkers,-r workflow/envs/checkers-lock.txt)
 	touch $@
 
 AGENT ?= $(shell git config user.name)
@@ -103,6 +110,7 @@ lock: ## pin the environments anew; needs uv
 	uv pip compile pyproject.toml --extra workflow --extra test --extra lint --extra build --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file environment-lock.txt
 	uv pip compile pyproject.toml --extra docs --extra build --constraint environment-lock.txt --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file docs/environment-lock.txt
 	uv pip compile --group pyproject.toml:checkers --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file workflow/envs/checkers-lock.txt
+	uv pip compile --group pyproject.toml:installer --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file workflow/envs/installer-lock.txt
 	uv pip compile --group pyproject.toml:slurm --constraint environment-lock.txt --universal --python-version 3.11 --generate-hashes --no-emit-index-url --output-file workflow/envs/slurm-lock.txt
 
 clean: ## remove what was computed, built or drawn

@@ -10,10 +10,10 @@ from support import ROOT, Repository, copy_repository
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark as slow what runs the workflow."""
+    """Keep what looks at the finished workflow in one process, so that it runs once."""
     for item in items:
-        if {"repository", "smoke_run"} & set(item.fixturenames):
-            item.add_marker("slow")
+        if "smoke_run" in item.fixturenames:
+            item.add_marker(pytest.mark.xdist_group("smoke"))
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
-from nonsmooth.paths.time_loop import march
+from nonsmooth.paths.time_loop import compile_march, march
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
@@ -48,7 +48,7 @@ def largest_distances(
         for one in (scene, scene.with_n(math.inf))
     ]
     for one, s in pair:
-        march(s, new_panel(one, sampling.seed, 0, "float64"), 0, 0, -np.inf, np.inf)
+        compile_march(s, new_panel(one, sampling.seed, 0, "float64"))
 
     def run(job):
         block, count = job

@@ -1,8 +1,12 @@
-"""Bars appear where somebody watches, and nowhere else."""
+"""Bars appear where somebody watches; Ctrl-C is heard while another thread works."""
 
 import io
+import os
+import signal
 import sys
+import threading
 
+import numpy as np
 import pytest
 
 from nonsmooth import progress
@@ -51,3 +55,37 @@ def test_short_computations_have_no_bars(monkeypatch):
     with progress.bar("simulating", 3) as advance:
         advance(3)
     assert "simulating" not in stream.getvalue()
+
+
+def test_the_result_is_that_of_the_call():
+    """Values and exceptions pass through, and so does numpy's treatment of overflow."""
+    assert progress.interruptible(lambda: 3) == 3
+    with pytest.raises(ZeroDivisionError):
+        progress.interruptible(lambda: 1 // 0)
+    with np.errstate(over="raise"), pytest.raises(FloatingPointError):
+        progress.interruptible(lambda: np.array([1e300]) ** 2)
+
+
+def test_ctrl_c_is_heard_while_a_library_works():
+    """KeyboardInterrupt is raised long before the call is done."""
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    begun, done = threading.Event(), threading.Event()
+
+    def work():
+        begun.set()
+        done.wait(60)
+
+    def press():
+        begun.wait()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    presser = threading.Thread(target=press)
+    presser.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            progress.interruptible(work)
+        assert not done.is_set()
+    finally:
+        signal.signal(signal.SIGINT, previous)
+        done.set()
+        presser.join()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,10 +20,20 @@ from nonsmooth.paths.time_loop import (
     compile_march,
     compile_march_pair,
     march,
-    march_pair,
+    march_and_sum,
+    march_pair_and_sum,
 )
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
+
+
+def compile_loops(precision: str) -> None:
+    """Compile the loops of the default scheme, which are the same for all its scenes."""
+    scene = Scene("friction")
+    fine, coarse = (registry.coefficients(scene, "strang", h, precision) for h in (0.1, 0.2))
+    panel = new_panel(scene, 0, 0, precision)
+    compile_march(fine, panel)
+    compile_march_pair(fine, registry.on_given_increments(coarse), panel)
 
 
 def gram(
@@ -52,17 +63,36 @@ def gram(
     SceneError
         If a parameter is out of range or a path diverges.
     """
-
-    def products(panel, count):
-        delta, martingale, variation = panel.total[:, :count]
-        vector = np.ones((5, count))
-        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused below
-            vector[1:] = delta, delta**2, martingale, martingale**2 - variation
-            return vector @ vector.T
-
     grid = [(parts * steps, h / parts) for steps, h in equal_steps(times, sampling.step)]
     require_memory(25 * len(grid) * kept_at_once(sampling))
-    return np.asarray(sum(over_blocks(scene, grid, sampling, products, control)))
+    coefficients = _coefficients(scene, grid, sampling, control)
+
+    def run(job):
+        block, count = job
+        panel = new_panel(scene, sampling.seed, block, sampling.precision)
+        sums, first = np.zeros((len(grid), 5, 5)), 0
+        for (steps, h), alike in groupby(grid):
+            last = first + len(list(alike))
+            march_and_sum(coefficients[h], panel, count, steps, sums[first:last])
+            first = last
+        return sums
+
+    total = np.zeros((len(grid), 5, 5))
+    for sums in parallel(run, sampling, sum(steps for steps, _ in grid)):
+        require_finite(sums)
+        total += sums
+    return total
+
+
+def _coefficients(scene, grid, sampling, control):
+    """Return the coefficients of the steps of each length, having compiled the loop for them."""
+    slope = poisson_slope(scene) if control else None
+    coefficients = {
+        h: registry.coefficients(scene, sampling.scheme, h, sampling.precision, slope)
+        for h in {h for _, h in grid}
+    }
+    compile_march(coefficients[grid[0][1]], new_panel(scene, sampling.seed, 0, sampling.precision))
+    return coefficients
 
 
 def over_blocks(
@@ -95,12 +125,7 @@ def over_blocks(
     ToleranceError
         If the simulation would take too long.
     """
-    slope = poisson_slope(scene) if control else None
-    coefficients = {
-        h: registry.coefficients(scene, sampling.scheme, h, sampling.precision, slope)
-        for h in {h for _, h in grid}
-    }
-    compile_march(coefficients[grid[0][1]], new_panel(scene, sampling.seed, 0, sampling.precision))
+    coefficients = _coefficients(scene, grid, sampling, control)
 
     def run(job):
         block, count = job
@@ -188,33 +213,27 @@ def coupled(
     """
     scheme, precision = sampling.scheme, sampling.precision
     grid = equal_steps(times, sampling.step)
-    pairs = [
-        tuple(
-            registry.coefficients(scene, scheme, half_or_whole, precision)
-            for half_or_whole in (h / 2, h)
+    pairs = {
+        h: (
+            registry.coefficients(scene, scheme, h / 2, precision),
+            registry.on_given_increments(registry.coefficients(scene, scheme, h, precision)),
         )
-        for _, h in grid
-    ]
-    fine, coarse = pairs[0]
-    compile_march_pair(
-        fine, registry.on_given_increments(coarse), new_panel(scene, sampling.seed, 0, precision)
-    )
+        for h in {h for _, h in grid}
+    }
+    compile_march_pair(*pairs[grid[0][1]], new_panel(scene, sampling.seed, 0, precision))
 
     def run(job):
         block, count = job
         panel, other = (new_panel(scene, sampling.seed, block, precision) for _ in range(2))
         passage = np.full((2, count), np.inf)
-        products = np.empty((len(grid), 4, 4))
-        vector = np.ones((4, count))
-        began = 0.0
-        for k, ((steps, h), (fine, coarse)) in enumerate(zip(grid, pairs, strict=True)):
-            given = registry.on_given_increments(coarse)
-            march_pair(fine, given, panel, other, count, steps, *levels, began, passage)
-            began += steps * h
-            half, whole = panel.total[TOTAL_DELTA, :count], other.total[TOTAL_DELTA, :count]
-            vector[1:] = whole - half, whole**2 - half**2, half
-            products[k] = vector @ vector.T
-        return products, passage
+        sums, first, began = np.zeros((len(grid), 4, 4)), 0, 0.0
+        for (steps, h), alike in groupby(grid):
+            last = first + len(list(alike))
+            both = (*pairs[h], panel, other, count, steps, levels)
+            march_pair_and_sum(*both, began, steps * h, passage, sums[first:last])
+            began += (last - first) * steps * h
+            first = last
+        return sums, passage
 
     require_memory(4 * sampling.paths)
     total, passages = np.zeros((len(grid), 4, 4)), []

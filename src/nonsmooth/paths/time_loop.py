@@ -15,13 +15,16 @@ import numpy as np
 from numba.extending import intrinsic, overload
 
 from nonsmooth.paths import tuning
-from nonsmooth.paths.kernels.compilation import inlined, kernel
+from nonsmooth.paths.kernels.compilation import announced, inlined, kernel
 from nonsmooth.paths.kernels.panel import (
     BASE,
     BEFORE,
     DELTA,
     FLUSH,
     ROWS,
+    TOTAL_DELTA,
+    TOTAL_MARTINGALE,
+    TOTAL_VARIATION,
     WIDTH,
     Panel,
     flush,
@@ -35,6 +38,8 @@ from nonsmooth.paths.parallel import count
 from nonsmooth.paths.schemes import registry
 
 EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
+_TOGETHER = 8  # lanes whose sums are gathered side by side, so that they vectorise
+_NO_SUMS, _NO_CHANGES = np.empty((0, 5, 5)), np.empty((0, 4, 4))
 
 
 @intrinsic
@@ -96,14 +101,40 @@ def march(s: Any, panel: Panel, lanes: int, steps: int, lower: float, upper: flo
         Number of paths left, in the first lanes.
     """
     for first, last in _pieces(steps + 1):
-        lanes = _march(s, panel, lanes, first, last, steps, lower, upper)
+        lanes = _march(s, panel, lanes, first, last, steps, lower, upper, _NO_SUMS)
         count(last - first)
     return lanes
 
 
+def march_and_sum(s: Any, panel: Panel, lanes: int, steps: int, sums: np.ndarray) -> None:
+    """Advance the paths of a panel through intervals of equal length; sum up at the end of each.
+
+    Parameters
+    ----------
+    s : NamedTuple
+        Coefficients of a scheme.
+    panel : Panel
+    lanes : int
+        Number of paths.
+    steps : int
+        Of each interval.
+    sums : array, shape (intervals, 5, 5)
+        To which the products of (1, D, D^2, M, M^2 - <M>) of all paths are added.
+    """
+    if steps > FLUSH:  # long enough for Python not to matter, and to be stopped within
+        for own in sums:
+            march(s, panel, lanes, steps, *EVERYWHERE)
+            _march(s, panel, lanes, 0, 0, 0, *EVERYWHERE, own[None])
+        return
+    for first, last in _pieces(len(sums)):
+        _march(s, panel, lanes, 0, steps + 1, steps, *EVERYWHERE, sums[first:last])
+        count((min(last, len(sums)) - first) * steps)
+
+
 def compile_march(s: Any, panel: Panel) -> None:
     """Compile `march` for the coefficients of a scheme and the precision of a panel."""
-    march(s, panel, 0, 0, *EVERYWHERE)
+    with announced(_march):
+        march(s, panel, 0, 0, *EVERYWHERE)
 
 
 def _pieces(steps: int) -> Iterator[tuple[int, int]]:
@@ -121,9 +152,21 @@ def _pieces(steps: int) -> Iterator[tuple[int, int]]:
 
 
 @kernel
-def _march(s, panel, lanes, first, last, steps, lower, upper):
-    """Advance the paths of a panel by the steps from `first` up to `last`."""
+def _march(s, panel, lanes, first, last, steps, lower, upper, sums):
+    """Advance the paths of a panel by the steps from `first` up to `last`.
+
+    If sums are wanted, do so as often as there are, and add to the next ones each time.
+    """
     words, data, total = _of_known_shape(panel)
+    for interval in range(max(len(sums), 1)):
+        lanes = _advance(s, words, data, total, lanes, first, last, steps, lower, upper)
+        if len(sums) > 0:
+            _add_products(total, lanes, sums[interval])
+    return lanes
+
+
+@inlined
+def _advance(s, words, data, total, lanes, first, last, steps, lower, upper):
     normal = 2
     for k in range(first, last):
         _flow(s, data, k == 0, k == steps, lanes)
@@ -144,6 +187,68 @@ def _march(s, panel, lanes, first, last, steps, lower, upper):
             if lower > -np.inf or upper < np.inf:
                 lanes = retire(words, data, total, lanes, lower, upper)
     return lanes
+
+
+@inlined
+def _add_products(total, lanes, sums):
+    """Add the products of (1, D, D^2, M, M^2 - <M>), summed over the lanes."""
+    partial = np.zeros((15, _TOGETHER))
+    for begin in range(0, lanes, _TOGETHER):
+        for j in range(min(_TOGETHER, lanes - begin)):
+            d, m = total[TOTAL_DELTA, begin + j], total[TOTAL_MARTINGALE, begin + j]
+            q, r = d * d, m * m - total[TOTAL_VARIATION, begin + j]
+            partial[0, j] += 1.0
+            partial[1, j] += d
+            partial[2, j] += q
+            partial[3, j] += m
+            partial[4, j] += r
+            partial[5, j] += d * d
+            partial[6, j] += d * q
+            partial[7, j] += d * m
+            partial[8, j] += d * r
+            partial[9, j] += q * q
+            partial[10, j] += q * m
+            partial[11, j] += q * r
+            partial[12, j] += m * m
+            partial[13, j] += m * r
+            partial[14, j] += r * r
+    _add_symmetric(partial, sums)
+
+
+@inlined
+def _add_changes(total, other, lanes, sums):
+    """Add the products of (1, D' - D, D'^2 - D^2, D), summed over the lanes; D' is the other's."""
+    partial = np.zeros((10, _TOGETHER))
+    for begin in range(0, lanes, _TOGETHER):
+        for j in range(min(_TOGETHER, lanes - begin)):
+            d, after = total[TOTAL_DELTA, begin + j], other[TOTAL_DELTA, begin + j]
+            c, q = after - d, after * after - d * d
+            partial[0, j] += 1.0
+            partial[1, j] += c
+            partial[2, j] += q
+            partial[3, j] += d
+            partial[4, j] += c * c
+            partial[5, j] += c * q
+            partial[6, j] += c * d
+            partial[7, j] += q * q
+            partial[8, j] += q * d
+            partial[9, j] += d * d
+    _add_symmetric(partial, sums)
+
+
+@inlined
+def _add_symmetric(partial, sums):
+    """Add a matrix given by the rows of its upper triangle, each divided into partial sums."""
+    k = 0
+    for i in range(len(sums)):
+        for j in range(i, len(sums)):
+            value = 0.0
+            for part in partial[k]:
+                value += part
+            sums[i, j] += value
+            if i != j:
+                sums[j, i] += value
+            k += 1
 
 
 def march_pair(
@@ -179,20 +284,74 @@ def march_pair(
         Times at which int g first reaches one of the levels, of the fine and of the coarse paths,
         interpolated within a step; inf before.
     """
+    levels = lower, upper
     for first, last in _pieces(2 * steps + 1):
-        _march_pair(
-            fine, coarse, panel, other, lanes, first, last, steps, lower, upper, began, passage
-        )
+        pair = fine, coarse, panel, other, lanes, first, last, steps
+        _march_pair(*pair, *levels, began, 0.0, passage, _NO_CHANGES)
         count(last - first)
+
+
+def march_pair_and_sum(
+    fine: Any,
+    coarse: Any,
+    panel: Panel,
+    other: Panel,
+    lanes: int,
+    steps: int,
+    levels: tuple[float, float],
+    began: float,
+    span: float,
+    passage: np.ndarray,
+    sums: np.ndarray,
+) -> None:
+    """Advance two panels through intervals of equal length; sum up at the end of each.
+
+    Parameters
+    ----------
+    fine, coarse, panel, other, lanes, began, passage
+        As for `march_pair`.
+    steps : int
+        Coarse ones of each interval.
+    levels : (float, float)
+    span : float
+        Length of an interval.
+    sums : array, shape (intervals, 4, 4)
+        To which the products of (1, D_h - D_h/2, D_h^2 - D_h/2^2, D_h/2) of all paths are added.
+    """
+    if steps > FLUSH:
+        for k, own in enumerate(sums):
+            at = began + k * span
+            march_pair(fine, coarse, panel, other, lanes, steps, *levels, at, passage)
+            pair = fine, coarse, panel, other, lanes, 0, 0, 0
+            _march_pair(*pair, *levels, at, span, passage, own[None])
+        return
+    for first, last in _pieces(len(sums)):
+        pair = fine, coarse, panel, other, lanes, 0, 2 * steps + 1, steps
+        _march_pair(*pair, *levels, began + first * span, span, passage, sums[first:last])
+        count((min(last, len(sums)) - first) * 2 * steps)
 
 
 @kernel
 def _march_pair(
-    fine, coarse, panel, other, lanes, first, last, steps, lower, upper, began, passage
+    fine, coarse, panel, other, lanes, first, last, steps, lower, upper, began, span, passage, sums
 ):
-    """Advance two panels by the fine steps from `first` up to `last`."""
+    """Advance two panels by the fine steps from `first` up to `last`.
+
+    If sums are wanted, do so as often as there are, and add to the next ones each time.
+    """
     words, data, total = _of_known_shape(panel)
     _, joined, other_total = _of_known_shape(other)
+    arrays = words, data, total, joined, other_total
+    for interval in range(max(len(sums), 1)):
+        now = began + interval * span
+        _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper, now, passage)
+        if len(sums) > 0:
+            _add_changes(total, other_total, lanes, sums[interval])
+
+
+@inlined
+def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper, began, passage):
+    words, data, total, joined, other_total = arrays
     a, b, c, d = fine.transition
     e, f, g = fine.factor
     for k in range(first, last):  # counts the fine steps
@@ -229,7 +388,8 @@ def _march_pair(
 
 def compile_march_pair(fine: Any, coarse: Any, panel: Panel) -> None:
     """Compile `march_pair` for two sets of coefficients and the precision of a panel."""
-    march_pair(fine, coarse, panel, panel, 0, 0, *EVERYWHERE, 0.0, np.empty((2, 0)))
+    with announced(_march_pair):
+        march_pair(fine, coarse, panel, panel, 0, 0, *EVERYWHERE, 0.0, np.empty((2, 0)))
 
 
 @inlined

@@ -76,7 +76,7 @@ NASTY = [
 ]
 
 
-@pytest.mark.parametrize(("parameters", "g", "kinks"), NASTY, ids=lambda p: str(p)[:40])
+@pytest.mark.parametrize(("parameters", "g", "kinks"), NASTY)
 def test_against_many_digits(parameters, g, kinks):
     """Value, mean and errors against 60 digits inside, 20 outside."""
     scene = ns.Scene("friction", **parameters)

@@ -4,19 +4,46 @@ Floating-point operations are not reordered (no fast-math), so that results do n
 compiler vectorises a loop. Kernels release Python's global lock (GIL), so that threads run at the
 same time. Machine code is cached on disk. Numba's own cache notices a change of the file that holds
 a kernel, but not of the files that the kernel calls into. The cache folder is therefore named after
-the content of the whole library.
+the content of the rooms that kernels are made of.
 """
 
 import hashlib
-from collections.abc import Callable
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numba
+import platformdirs
+from numba.core import event
 
 _PACKAGE = Path(__file__).parents[2]  # the whole library
-_DIGEST = hashlib.sha256(b"".join(p.read_bytes() for p in sorted(_PACKAGE.rglob("*.py"))))
-_CACHE = str(_PACKAGE / "__pycache__" / f"kernels-{_DIGEST.hexdigest()[:16]}")
+_SOURCES = sorted(p for room in ("paths", "scenes") for p in (_PACKAGE / room).rglob("*.py"))
+_DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()
+
+
+def _cache_folder() -> str:
+    """Return a folder that can be written to, or nothing.
+
+    It is that of the environment variable NUMBA_CACHE_DIR; or else the library's own; or else, if
+    that is read-only, the user's.
+    """
+    wanted: Any = numba.config
+    own, of_user = _PACKAGE / "__pycache__", platformdirs.user_cache_path("nonsmooth")
+    for parent in [Path(wanted.CACHE_DIR)] if wanted.CACHE_DIR else [own, of_user]:
+        folder = parent / f"kernels-{_DIGEST[:16]}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+        except OSError:
+            continue
+        return str(folder)
+    return ""
+
+
+_CACHE = _cache_folder()
 
 
 def kernel(function: Callable, forceinline: bool = False) -> Callable:
@@ -27,7 +54,7 @@ def kernel(function: Callable, forceinline: bool = False) -> Callable:
     elsewhere, config.CACHE_DIR = config.CACHE_DIR, _CACHE
     try:
         return numba.njit(
-            function, cache=True, nogil=True, error_model="numpy", forceinline=forceinline
+            function, cache=bool(_CACHE), nogil=True, error_model="numpy", forceinline=forceinline
         )
     finally:
         config.CACHE_DIR = elsewhere
@@ -36,3 +63,33 @@ def kernel(function: Callable, forceinline: bool = False) -> Callable:
 def inlined(function: Callable) -> Callable:
     """Compile a function into its callers: a loop is only vectorised if there is no call in it."""
     return kernel(function, forceinline=True)
+
+
+@contextmanager
+def announced(loop: Any) -> Iterator[None]:
+    """Say so, in one line on the standard error, if a kernel is compiled and not just loaded.
+
+    Parameters
+    ----------
+    loop : numba dispatcher
+        The kernel that is meant, not those that are compiled into it.
+    """
+    with event.install_listener("numba:compile", _Announcement(loop)):
+        yield
+
+
+class _Announcement(event.Listener):
+    def __init__(self, loop):
+        self.loop = loop
+
+    def on_start(self, event):
+        if event.data["dispatcher"] is self.loop:
+            kept = (
+                f"once; it is kept in {_CACHE}"
+                if _CACHE
+                else "every time; set NUMBA_CACHE_DIR to a folder that can be written to"
+            )
+            print(f"nonsmooth: compiling the simulation, {kept}", file=sys.stderr)
+
+    def on_end(self, event):
+        pass

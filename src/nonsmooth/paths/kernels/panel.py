@@ -123,9 +123,16 @@ def retire(words, data, total, lanes, lower, upper):
         high = data[PEAK, i] if symmetric else data[HIGH, i]
         if (low <= lower or high >= upper) and -np.inf < low and high < np.inf:
             lanes -= 1
-            words[:, i] = words[:, lanes]
-            data[:, i] = data[:, lanes]
-            total[:, i] = total[:, lanes]
+            _copy(words, lanes, i)
+            _copy(data, lanes, i)
+            _copy(total, lanes, i)
         else:
             i += 1
     return lanes
+
+
+@inlined
+def _copy(rows, lane, to):
+    # an assignment of slices would be compiled with a message about their shapes: seconds
+    for row in range(len(rows)):
+        rows[row, to] = rows[row, lane]

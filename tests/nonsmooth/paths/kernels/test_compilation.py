@@ -1,0 +1,69 @@
+"""Where machine code is kept, and what is said of it."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from support import ROOT
+
+FIRST = """
+import numpy as np
+from nonsmooth.paths.kernels import compilation
+kernel = compilation.kernel(lambda x: x + 1)
+with compilation.announced(kernel):
+    print(kernel(1), compilation._CACHE)
+"""
+
+
+def run(library, **environment):
+    """Compile a kernel in a process of its own, with a library in some folder."""
+    program = library / "first.py"
+    program.write_text(FIRST)
+    return subprocess.run(
+        [sys.executable, str(program)],
+        env=os.environ | {"PYTHONPATH": str(library)} | environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+@pytest.fixture
+def library(tmp_path):
+    """Return a copy of the library."""
+    folder = tmp_path / "library"
+    shutil.copytree(
+        ROOT / "src" / "nonsmooth",
+        folder / "nonsmooth",
+        ignore=shutil.ignore_patterns("__pycache__"),
+    )
+    return folder
+
+
+def test_the_folder_of_the_environment_is_respected(library, tmp_path):
+    """NUMBA_CACHE_DIR says where."""
+    done = run(library, NUMBA_CACHE_DIR=str(tmp_path / "elsewhere"))
+    assert done.stdout.startswith(f"2 {tmp_path / 'elsewhere'}")
+    assert not list(library.rglob("kernels-*"))
+
+
+def test_a_read_only_library_is_compiled_into_the_users_folder(library, tmp_path):
+    """A file in the place of the library's folder stands for one that cannot be written to."""
+    (library / "nonsmooth" / "__pycache__").write_text("")
+    done = run(library, XDG_CACHE_HOME=str(tmp_path / "home"), PYTHONDONTWRITEBYTECODE="1")
+    assert done.stdout.startswith(f"2 {tmp_path / 'home'}")
+
+
+def test_without_any_folder_there_is_no_cache_and_a_line_says_so(library, tmp_path):
+    """As in a container whose user has no home."""
+    for name in ("library/nonsmooth/__pycache__", "home"):
+        (tmp_path / name).write_text("")
+    done = run(library, XDG_CACHE_HOME=str(tmp_path / "home"), PYTHONDONTWRITEBYTECODE="1")
+    assert done.stdout.split() == ["2"]
+    assert done.stderr.splitlines() == [
+        "nonsmooth: compiling the simulation, every time; "
+        "set NUMBA_CACHE_DIR to a folder that can be written to"
+    ]
