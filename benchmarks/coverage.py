@@ -49,6 +49,45 @@ def of_crossing(run, threshold, horizon, truth, paths):
     return bool(lower <= truth <= upper)
 
 
+# Limits that account for the bias of the step: scene, threshold, p, horizon, step, paths. Steps are
+# coarse: the bias is up to four standard errors.
+COARSE = {
+    "b = 0.6, p = 1, step 0.1": (FRICTION, 0.6, 1.0, 2.0, 0.1, 2_000),
+    "b = 0.6, p = 4, step 0.5": (FRICTION, 0.6, 4.0, 2.0, 0.5, 2_000),
+    "b = 0.6, p = 4, step 0.5, more paths": (FRICTION, 0.6, 4.0, 2.0, 0.5, 20_000),
+    "b = 0.3, p = 10, step 0.4": (FRICTION, 0.3, 10.0, 1.0, 0.4, 4_000),
+    "b = 0.3, p = 10, step 0.4, more paths": (FRICTION, 0.3, 10.0, 1.0, 0.4, 20_000),
+    "n = 2, b = 0.5, p = 4, step 0.4": (FRICTION.with_n(2.0), 0.5, 4.0, 1.0, 0.4, 4_000),
+    "n = inf, b = 0.6, p = 1, step 0.4": (FRICTION.with_n(np.inf), 0.6, 1.0, 2.0, 0.4, 4_000),
+    "b = 1, p = 1, step 0.2": (FRICTION, 1.0, 1.0, 2.0, 0.2, 4_000),
+}
+
+
+def of_limits(scene, threshold, p, horizon, step, paths, runs, first=1):
+    """Count the runs whose limits, with the bias of the step in them, contain the truth.
+
+    Parameters
+    ----------
+    scene, threshold, p, horizon, step, paths
+        As for `crossing_probability`.
+    runs, first : int
+        Number of runs, and the first seed.
+
+    Returns
+    -------
+    dict
+        `covered`, a proportion; `bias`, the mean one over the mean standard error; `truth`.
+    """
+    problem = scene, threshold, [horizon], p
+    truth = float(ns.crossing_probability(*problem, method="deterministic").probability[0])
+    hits, bias = [], []
+    for seed in range(first, first + runs):
+        run = ns.crossing_probability(*problem, step=step, paths=paths, seed=seed, threads=1)
+        hits.append(bool(run.lower[0] <= truth <= run.upper[0]))
+        bias.append(float(run.step_bias[0] / run.standard_error[0]))
+    return {"covered": np.mean(hits), "bias": np.mean(bias), "truth": truth}
+
+
 def rare_probability(paths):
     """Probability of the rare crossing with the runs' own step, from independent paths."""
     crossed = first_passage_counts(
@@ -97,4 +136,6 @@ def coverage(runs, truth_paths=100_000_000):
 
 
 if __name__ == "__main__":
+    limits = {name: of_limits(*case, runs=1000) for name, case in COARSE.items()}
+    print(pd.DataFrame(limits).T.to_string(), end="\n\n")
     print(coverage(1000).to_string(index=False))

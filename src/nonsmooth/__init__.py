@@ -7,7 +7,8 @@ penalized by n; most functions also take the limit n = inf.
 What is studied: `Scene`, with the noises `White`, `Langevin`, `Hamiltonian`, `OrnsteinUhlenbeck`,
 `KanaiTajimi`. What can be asked of a scene:
 
-- `asymptotic_variance`: gamma^2, and `variance`: the variance of the integral at given times
+- `asymptotic_variance`: gamma^2, `mean`: E g, and `variance`: the variance of the integral at
+  given times
 - `invariant_density`, `spectral_gap`: where the state is in the long run, and how soon it forgets
   its start
 - `simulate`: paths, or the moments of the integral

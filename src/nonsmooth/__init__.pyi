@@ -14,6 +14,7 @@ from .scenes.noises import White as White
 from .scenes.scene import Scene as Scene
 from .statistics.asymptotic_variance import asymptotic_variance as asymptotic_variance
 from .statistics.invariant_density import invariant_density as invariant_density
+from .statistics.mean import mean as mean
 from .statistics.spectral_gap import spectral_gap as spectral_gap
 from .statistics.variance import variance as variance
 

@@ -39,9 +39,9 @@ def probabilities(
         Over (p, horizon).
     """
     found = [crossing_probability(scene, threshold, horizons, scale, **options) for scale in p]
-    pairs = np.array([[run["probability"], run["probability_error"]] for run in found])
-    value, error = pairs.swapaxes(0, 1)
-    return value, error
+    # of the paper's formula the error that is its own, not the distance to a finite p
+    errors = [run.get("limit_error", run["probability_error"]) for run in found]
+    return np.array([run["probability"] for run in found]), np.array(errors)
 
 
 def check_stated_errors(p: np.ndarray, off: np.ndarray, allowed: np.ndarray) -> None:

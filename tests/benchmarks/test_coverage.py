@@ -4,10 +4,19 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from benchmarks.coverage import coverage
+from benchmarks.coverage import COARSE, coverage, of_limits
 
 RUNS = 150
 FALSE_ALARM = 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COARSE)
+def test_limits_account_for_the_bias_of_the_step(name):
+    """At coarse steps, too; within what chance allows about 93 to 97 %, as below."""
+    hits = round(of_limits(*COARSE[name], runs=RUNS, first=5000)["covered"] * RUNS)
+    level = FALSE_ALARM / 2 / len(COARSE)
+    assert stats.binom.ppf(level, RUNS, 0.93) <= hits <= stats.binom.isf(level, RUNS, 0.97)
 
 
 @pytest.mark.slow

@@ -48,7 +48,10 @@ def solved_constants(
 
 @lru_cache(maxsize=16)  # the constants serve every p and every interval
 def layer_constants(
-    scene: Scene, seed: int | tuple = 0, threads: int | None = None
+    scene: Scene,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+    tol: float | None = None,
 ) -> tuple[LayerConstants, LayerConstants]:
     """Compute the constants, by Monte Carlo where nothing else applies.
 
@@ -58,6 +61,8 @@ def layer_constants(
         With the state y and white noise, or with odd g.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
+    tol : float, optional
+        Absolute error wanted of kappa, as for `extrapolation_length`.
 
     Returns
     -------
@@ -68,10 +73,10 @@ def layer_constants(
     SceneError, ToleranceError
         As `extrapolation_length`.
     """
-    solved = solved_constants(scene)
+    solved = solved_constants(scene, tol)
     if solved is not None:
         return solved
-    kappa = sampled_kappa(scene, seed=labelled(seed, "length"), threads=threads)
+    kappa = sampled_kappa(scene, tol, seed=labelled(seed, "length"), threads=threads)
     gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
     u = sampled_poisson(scene, labelled(seed, "start"), threads)
     return (

@@ -18,7 +18,7 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import direct_solver, fitted
 from nonsmooth.refine import Refined, until_agreement
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.statistics.gamma2_on_grids import gamma2_by_combination
+from nonsmooth.statistics import gamma2_on_grids
 
 
 def applies(scene: Scene) -> bool:
@@ -60,7 +60,7 @@ def layer_constants(
         if errors.max() <= tol:
             break
         grid, best = grid.all_raised(), values[0]
-    gamma2, uncertainty = gamma2_by_combination(scene, tuning.TWO_VARIABLES.gamma2)
+    gamma2, uncertainty = gamma2_on_grids.gamma2(scene, tuning.TWO_VARIABLES.gamma2)
     kappa, u = map(float, values)
     kappa_error, u_error = map(float, errors)
     return (

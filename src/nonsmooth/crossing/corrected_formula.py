@@ -16,8 +16,9 @@ threshold, (m/b) exp(-b/m) is added to R for the layer's effect at the start. Wh
 thick that order 1 replaces the others, R grows with m/b instead. R never exceeds a limit that
 grows with log(1 + 2 m/b). The numbers a and c are fitted, see `tuning`.
 
-Not in the error are large excursions of a g that grows faster than the theorems allow. They make
-early crossings likelier than the formula and its error say; the scene warns of such a g.
+Large excursions of a g that grows faster than the theorems allow make early crossings likelier than
+the formula says. For such a g, of which the scene warns, nothing is known but that a probability is
+between 0 and 1, and the error says so.
 """
 
 from collections.abc import Iterator
@@ -42,6 +43,7 @@ def corrected_crossing(
     tol: float | None = None,
     seed: int | tuple = 0,
     threads: int | None = None,
+    accuracy: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """P(int_0^t g leaves (sqrt(p) lower, sqrt(p) upper) before p T), corrected for a finite p.
 
@@ -60,6 +62,8 @@ def corrected_crossing(
         Largest absolute error that is accepted. Unless given, the error may be anything.
     seed, threads
         For constants that are sampled.
+    accuracy : float, optional
+        Absolute error wanted of kappa, as for `extrapolation_length`.
 
     Returns
     -------
@@ -75,7 +79,7 @@ def corrected_crossing(
         If an error is above `tol`; with the values and errors as its `result`.
     """
     _require_order(scene, order)
-    constants, errors = layer_constants(scene, seed, threads)
+    constants, errors = layer_constants(scene, seed, threads, accuracy)
     times = p * np.asarray(horizons, dtype=float)
     formula = Expansion(constants, *(np.sqrt(p) * level for level in threshold))
     if formula.moved_lower < 0 < formula.moved_upper:
@@ -84,6 +88,8 @@ def corrected_crossing(
         error = np.abs(found[-1] - value) + _error_of_last(formula, errors, times, found[-1])
     else:  # the start, moved by u, is beyond a moved threshold: the formula says nothing
         value, error = np.ones(times.shape), np.ones(times.shape)
+    if scene.grows_too_fast:  # single excursions may cross at any time
+        error = np.maximum(error, np.maximum(value, 1 - value))
     worst = int(np.argmax(error))
     if tol is not None and not error[worst] <= tol:
         raise ToleranceError(

@@ -185,6 +185,47 @@ def proportion(
     return successes / trials, lower, upper
 
 
+def limits_less_bias(
+    crossed: np.ndarray, paths: int, bias: np.ndarray, bias_error: np.ndarray, level: float = 0.95
+) -> tuple[np.ndarray, np.ndarray]:
+    """Confidence limits of a probability that is counted with a bias, which is known with an error.
+
+    The distances of Jeffreys' limits and that of the bias are added as squares (Zou and Donner,
+    Statist. Med. 27, 2008), around the fraction less the bias. The interval is widened to contain
+    the fraction itself; what this adds to the level is taken from the other limit, so that a large
+    bias does not make it too wide.
+
+    Parameters
+    ----------
+    crossed : numpy.ndarray of int, shape (k,)
+    paths : int
+    bias, bias_error : numpy.ndarray, shape (k,)
+        The expectation of the fraction less the probability, and the standard error of that.
+    level : float
+        Confidence level of the two-sided interval.
+
+    Returns
+    -------
+    lower, upper : numpy.ndarray, shape (k,)
+    """
+    fraction, low, high = proportion(crossed, paths, level)
+    two_sided = scipy.special.ndtri((1 + level) / 2)
+    below, above = (
+        np.hypot(distance, two_sided * bias_error) for distance in (fraction - low, high - fraction)
+    )
+    # how many standard errors the bias is, at least those of the two-sided interval
+    away = two_sided * np.maximum(np.abs(bias) / np.where(bias > 0, above, below), 1.0)
+    other = scipy.special.ndtri(np.minimum(level + scipy.special.ndtr(-away), (1 + level) / 2))
+    other = np.where(away > two_sided, other / two_sided, 1.0)
+    centre = fraction - bias
+    lower = centre - np.where(bias > 0, other, 1.0) * below
+    upper = centre + np.where(bias < 0, other, 1.0) * above
+    return (
+        np.clip(np.minimum(lower, fraction), 0.0, 1.0),
+        np.clip(np.maximum(upper, fraction), 0.0, 1.0),
+    )
+
+
 def crossing_estimate(crossed: np.ndarray, paths: int) -> dict:
     """Turn numbers of crossed paths into `probability`, its standard error and 95 % limits.
 

@@ -10,6 +10,7 @@ from nonsmooth.crossing.counting import (
     bias_of_counts,
     crossing_estimate,
     first_passage_counts,
+    limits_less_bias,
     proportion,
 )
 from nonsmooth.errors import ToleranceError
@@ -79,7 +80,7 @@ def sampled_crossing(
     Returns
     -------
     values : dict
-        As for `crossing_estimate`, and `step_bias` with its error.
+        What `crossing_probability` describes.
     attributes : dict
         `step`, `paths`.
 
@@ -270,7 +271,18 @@ class _Request:
 
 
 def _outcome(crossed, paths, step, bias, error):
-    values = crossing_estimate(crossed, paths) | {"step_bias": bias, "step_bias_error": error}
+    counted = crossing_estimate(crossed, paths)
+    spread = counted["probability_error"]
+    lower, upper = limits_less_bias(crossed, paths, bias, error)
+    values = {
+        "probability": counted["probability"],
+        "probability_error": np.minimum(np.abs(bias) + np.hypot(spread, error), 1.0),
+        "lower": lower,
+        "upper": upper,
+        "standard_error": spread,
+        "step_bias": bias,
+        "step_bias_error": error,
+    }
     return values, {"step": step, "paths": paths}
 
 

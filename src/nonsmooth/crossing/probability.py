@@ -6,12 +6,14 @@ A threshold is a number b, for both sides, or a pair (lower, upper): see `thresh
 
 import inspect
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from nonsmooth.boundary_layer.milne import highest_order
 from nonsmooth.checks import (
     require_choice,
     require_count,
@@ -26,12 +28,13 @@ from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
-from nonsmooth.errors import SceneError, answered, first_answer, quoted
+from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer, quoted
 from nonsmooth.paths.sampling import PRECISIONS
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
-from nonsmooth.statistics.asymptotic_variance import limit_variance, stationary_mean
+from nonsmooth.statistics.asymptotic_variance import limit_variance
+from nonsmooth.statistics.mean import mean
 
 
 def crossing_probability(
@@ -72,6 +75,7 @@ def crossing_probability(
         - ``"monte_carlo"`` counts paths. It is chosen for all other scenes, and where the
           deterministic method misses a tolerance that is loose enough for counting.
         - ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity, eq. (33) of the paper.
+          It does not depend on p; its error does.
         - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
           order 1/p, p^(-3/2) or p^(-2). For the state y with white noise it has the orders 1 and
           2, and 3 if g is odd; elsewhere it needs odd g and has the order 1.
@@ -96,17 +100,21 @@ def crossing_probability(
     Returns
     -------
     xarray.Dataset
-        Over `horizon`, with the method among its attributes: `probability` and
-        `probability_error`. The error is
+        Over `horizon`, with the method among its attributes: `probability`, and its distance
+        `probability_error` to the probability asked for, that of this scene at this p. All that
+        the method does not know is part of it. The probability asked for is between `lower` and
+        `upper`.
 
-        - of ``"monte_carlo"`` the standard error; the 95 % confidence limits are `lower` and
-          `upper`, and the bias of the time step, as measured by halving it, is `step_bias` with
-          its standard error `step_bias_error`;
-        - of ``"deterministic"`` the difference of two resolutions; the complement of the
-          probability is `survival` with `survival_error`, for one variable to relative accuracy;
-        - of ``"corrected"`` a bound of the distance to the probability at this p, from the size of
-          the next orders;
-        - of ``"asymptotic"`` what it inherits from gamma^2, not the distance to a finite p.
+        - ``"deterministic"``: the error is estimated from two resolutions. The complement of the
+          probability is `survival` with `survival_error`, for one variable to relative accuracy.
+        - ``"corrected"``: a bound, from the size of the next orders and the errors of gamma^2 and
+          kappa. It is the trivial one for a g that grows faster than the theorems allow.
+        - ``"asymptotic"``: a bound, by the corrected formula of the highest order; the trivial one
+          where there is none. What W_star inherits from gamma^2 alone is `limit_error`.
+        - ``"monte_carlo"``: the bias of the time step and the standard error together, and `lower`
+          and `upper` are 95 % confidence limits that account for both. The `standard_error` alone;
+          and the bias, as measured by halving the step, `step_bias` with its standard error
+          `step_bias_error`. The bias is not subtracted from the probability.
 
     Raises
     ------
@@ -140,6 +148,9 @@ def crossing_probability(
 
     def present(found):
         name, values, attributes = found
+        value, error = values["probability"], values["probability_error"]
+        limits = {"lower": np.maximum(value - error, 0), "upper": np.minimum(value + error, 1)}
+        values = limits | values
         return xr.Dataset(
             {name: ("horizon", value) for name, value in values.items()},
             coords={"horizon": horizons},
@@ -193,19 +204,41 @@ def _attempts(scene, horizons, p, given):
 
 
 def _asymptotic(scene, threshold, horizons, p, seed, threads):
-    """Evaluate W_star(b / gamma, T), which does not depend on p."""
-    mean, uncertainty = stationary_mean(scene, seed, threads)
+    """Evaluate W_star(b / gamma, T), which does not depend on p; the error does.
+
+    It is the distance to the corrected formula of the highest order, and the error of that.
+    """
+    if scene.primitive_variable is not None:
+        raise SceneError(
+            f"gamma^2 = 0 in this scene: int g is a function of {scene.primitive_variable} along "
+            f"paths, here of g = {quoted(scene.observable)}; choose another g, such as "
+            f"{scene.primitive_variable}"
+        )
     gamma2 = limit_variance(scene, seed, threads)
+    _require_centred(scene, gamma2, mean(scene, seed=seed, threads=threads))
+    value, own = asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error)
+    error = np.maximum(value, 1 - value)  # all that is known of a probability
+    if highest_order(scene) > 1 or scene.is_odd():
+        rough = None if scene.is_line else tuning.LIMIT_ERROR.kappa * np.sqrt(gamma2.value)
+        order = highest_order(scene)
+        with suppress(ToleranceError):  # kappa out of reach
+            nearer, rest = corrected_crossing(
+                scene, threshold, horizons, p, order, None, seed, threads, rough
+            )
+            error = np.minimum(np.abs(value - nearer) + rest + own, error)
+    return {"probability": value, "probability_error": error, "limit_error": own}, {}
+
+
+def _require_centred(scene, gamma2, found):
+    """Refuse a g whose mean is not 0."""
     centred = tuning.CENTRED
-    if abs(mean) > max(
-        centred.relative * np.sqrt(gamma2.value), centred.uncertainties * uncertainty
-    ):
+    uncertainties = centred.uncertainties if found.method == "Monte Carlo" else 1.0
+    least = max(centred.relative * np.sqrt(gamma2.value), uncertainties * found.error)
+    if abs(found.value) > least:
         raise SceneError(
             f"the asymptotic formula needs E g = 0, but g = {quoted(scene.observable)} has "
-            f"the mean {mean:.10g}; subtract it from g"
+            f"the mean {found.value:.10g}; subtract it from g"
         )
-    value, error = asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error)
-    return {"probability": value, "probability_error": error}, {}
 
 
 def _deterministic(scene, threshold, horizons, p, seed, threads, tol=None):

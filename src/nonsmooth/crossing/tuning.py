@@ -33,6 +33,15 @@ class Centred:
 
 
 @dataclass(frozen=True)
+class LimitError:
+    """The distance of the limit to a finite p."""
+
+    kappa: float = (
+        0.3  # error wanted of kappa over gamma with two and more variables; chosen: quick
+    )
+
+
+@dataclass(frozen=True)
 class BrownianSeries:
     """The two series of Brownian crossing, each used where none of its terms cancel."""
 
@@ -110,6 +119,7 @@ class Counting:
 
 METHOD_CHOICE = MethodChoice()
 CENTRED = Centred()
+LIMIT_ERROR = LimitError()
 BROWNIAN_SERIES = BrownianSeries()
 RANDOM_CLOCK = RandomClock()
 ORDERS = Orders()

@@ -49,7 +49,8 @@ class Scene:
         U, a formula in ``x``.
     observable : str
         g, a formula in ``zeta, eta, y, x``, or the penalty force by its name in the model:
-        ``"plastic_strain_rate"``, ``"friction_force"``, ``"contact_force"``.
+        ``"plastic_strain_rate"``, ``"friction_force"``, ``"contact_force"``. Unless given, it is
+        y; with obstacles x, because the integral of y is a displacement, which they bound.
     start : dict
         Initial values of the state variables; those not named start at 0.
 
@@ -66,7 +67,7 @@ class Scene:
     n: float = 100.0
     damping: float = 1.0
     potential: str = "0"
-    observable: str = "y"
+    observable: Any = None  # replaced by that of the model unless given
     start: dict = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -77,6 +78,8 @@ class Scene:
     def _check(self):
         """Bring the arguments into their usual form and refuse those that make no scene."""
         self._check_model_and_noise()
+        if self.observable is None:
+            self._set("observable", self.mechanics.default_observable)
         self._check_numbers()
         self._check_start()
         for name in ("potential", "observable"):
@@ -152,20 +155,25 @@ class Scene:
         Where the penalty is part of the potential, U_n is meant: a penalty confines, too, unless U
         falls more steeply.
         """
-        if "x" not in self.state or (self.mechanics.in_potential and math.isinf(self.n)):
-            return
-        U = self._with_numbers(self.potential_expression + self.mechanics.added_potential)
-        ends = np.outer([-1, 1], tuning.FAR_OUT.distances)
-        with np.errstate(all="ignore"):
-            ratio = vectorised(U, (x,))(ends) / ends**2
-        kept = ratio[:, -1] > tuning.FAR_OUT.kept * np.abs(ratio[:, 0])
-        if not (np.all(kept) and np.all(ratio > 0)):
+        if "x" in self.state and not self.is_confined:
             warnings.warn(
                 f"U = {quoted(self.potential)} violates (HU2), U(x) >= c x**2 - C: the paper's "
                 "theorems do not cover this scene; add a confining term such as x**2/2",
                 AssumptionWarning,
                 stacklevel=4,
             )
+
+    @cached_property
+    def is_confined(self) -> bool:
+        """Whether U, with the penalty that is part of the potential, grows quadratically."""
+        if self.mechanics.in_potential and math.isinf(self.n):
+            return True
+        U = self._with_numbers(self.potential_expression + self.mechanics.added_potential)
+        ends = np.outer([-1, 1], tuning.FAR_OUT.distances)
+        with np.errstate(all="ignore"):
+            ratio = vectorised(U, (x,))(ends) / ends**2
+        kept = ratio[:, -1] > tuning.FAR_OUT.kept * np.abs(ratio[:, 0])
+        return bool(np.all(kept) and np.all(ratio > 0))
 
     def _warn_if_g_grows(self):
         """Warn unless g^2 <= C V_n, which Theorem 6 of the paper asks for."""
@@ -291,6 +299,25 @@ class Scene:
     def is_line(self) -> bool:
         """Whether the state is the velocity alone, with white noise: A is then self-adjoint."""
         return self.state == ("y",) and self.noise.kind == "white"
+
+    @cached_property
+    def primitive_variable(self) -> sympy.Symbol | None:
+        """The variable q of which g is, along paths, the derivative of a function; None if none.
+
+        Noise does not act on q, so that d phi(q)/dt = phi'(q) times the drift of q. Where g is of
+        this form, as g = y with obstacles and q = x, int_0^t g = phi(q_t) - phi(q_0) stays bounded:
+        E g = 0 and gamma^2 = 0. Only formulas that show it after cancelling are noticed.
+        """
+        g = self._with_numbers(self.observable_expression)
+        for q in (s for s in self.variables if s.name in self.state and s != self.noise.driven):
+            if q == x and not self.is_confined:  # x has no invariant law
+                continue
+            ratio = g / self._with_numbers(self.drift[q])
+            if not ratio.has(sympy.Piecewise):
+                ratio = sympy.cancel(ratio)
+            if ratio.free_symbols & {*self.variables} <= {q}:
+                return q
+        return None
 
     def is_odd(self) -> bool:
         """Whether g and the drift change sign with the state, so that E g = 0 by symmetry.

@@ -3,7 +3,8 @@
 By Theorem 6 of the paper the variance of int_0^t g grows like gamma^2 t. Each quantity has one
 public function, which chooses between methods by the scene and the tolerance.
 
-- `asymptotic_variance.asymptotic_variance`: gamma^2, and `stationary_mean` of g
+- `asymptotic_variance.asymptotic_variance`: gamma^2
+- `mean.mean`: E g
 - `variance.variance`: mean and variance of int_0^tau g over finite times
 - `invariant_density.invariant_density`: the density that the state settles to
 - `spectral_gap.spectral_gap`: the rate at which correlations decay

@@ -17,7 +17,7 @@ from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.scene import Scene, require_scene
 from nonsmooth.statistics import gamma2_on_grids, tuning
-from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2, sampled_mean
+from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2
 
 
 def asymptotic_variance(
@@ -46,7 +46,9 @@ def asymptotic_variance(
     Returns
     -------
     Estimate
-        Exactly 0 if g is constant. Deterministic for the state y with white noise by closed form
+        Exactly 0 if g is constant, or the derivative of a function of x (or of another variable)
+        along paths, as g = y with obstacles is: int_0^t g stays bounded then, and another g, such
+        as x, tells more. Deterministic for the state y with white noise by closed form
         (dry friction, g = y) or quadrature, in every other scene by spectral elements. By Monte
         Carlo the error is the bias of the time step and the standard error together; `tol` bounds
         the bias and three standard errors.
@@ -66,6 +68,9 @@ def asymptotic_variance(
     seed, threads = require_seed(seed), require_threads(threads)
     if not scene.state:
         return Estimate(0.0, 0.0, "g is constant", time.perf_counter() - began)
+    if scene.primitive_variable is not None:
+        way = f"g is a derivative in {scene.primitive_variable}"
+        return Estimate(0.0, 0.0, way, time.perf_counter() - began)
     ways = _fastest_first(scene, tol) if method is None else [method]
 
     def solve():
@@ -146,25 +151,3 @@ def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = No
         scene.dimension, (None, "monte_carlo")
     )
     return asymptotic_variance(scene, accuracy, way, seed, threads)
-
-
-def stationary_mean(
-    scene: Scene, seed: int | tuple = 0, threads: int | None = None
-) -> tuple[float, float]:
-    """Stationary mean of g and its error: exact by symmetry or quadrature, else by Monte Carlo.
-
-    Parameters
-    ----------
-    scene : Scene
-    seed, threads
-        For Monte Carlo.
-
-    Returns
-    -------
-    value, error : float
-    """
-    if scene.is_odd():
-        return 0.0, 0.0
-    if scene.is_line:
-        return quadrature.mean(scene)
-    return sampled_mean(scene, seed, threads)

@@ -16,8 +16,14 @@ from nonsmooth.estimate import require
 from nonsmooth.grids import potential_wells
 from nonsmooth.paths.ensembles import coupled, integrals_at
 from nonsmooth.paths.kernels.random_numbers import labelled
-from nonsmooth.paths.moments import step_bias
-from nonsmooth.paths.resolution import coarse_step, paths_for, refined_step
+from nonsmooth.paths.moments import mean_bias, step_bias
+from nonsmooth.paths.resolution import (
+    coarse_step,
+    halving_paths,
+    paths_for,
+    refined_step,
+    require_possible,
+)
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.tuning import MONTE_CARLO
@@ -192,23 +198,59 @@ def sampled_gamma2(
 
 
 def sampled_mean(
-    scene: Scene, seed: int | tuple = 0, threads: int | None = None
+    scene: Scene, tol: float | None = None, seed: int | tuple = 0, threads: int | None = None
 ) -> tuple[float, float]:
-    """Sample the stationary mean of g, with its standard error.
+    """Sample the stationary mean of g.
+
+    Parameters
+    ----------
+    scene : Scene
+    tol : float, optional
+        Absolute; it bounds the bias of the step and three standard errors. Unless given, a pilot is
+        all that is run.
+    seed : int or tuple
+    threads : int, optional
+
+    Returns
+    -------
+    value, error : float
+        The error is the bias of the step and the standard error together.
 
     Raises
     ------
     ToleranceError
-        If the slope of the variance does not settle.
+        If `tol` is not met, or the slope of the variance does not settle.
     """
-    own = labelled(seed, "mean")
-    sampling = Sampling(_short_step(scene), MONTE_CARLO.pilot_paths, own, threads=threads)
-    _, found = _settled(scene, sampling)
-    return found.mean, found.mean_error
+    own, paths, step = labelled(seed, "mean"), MONTE_CARLO.pilot_paths, _short_step(scene)
+    order = registry.scheme(scene).weak_order(scene)
+    for _ in range(MONTE_CARLO.attempts):
+        sampling = Sampling(step, paths, own, threads=threads)
+        times, found = _settled(scene, sampling)
+        halving = replace(sampling.labelled("halving"), paths=halving_paths(paths))
+        bias, spread = _mean_bias(scene, times, halving, order)
+        deviation = math.hypot(found.mean_error, spread)
+        error = abs(bias) + deviation
+        if tol is None or abs(bias) + MONTE_CARLO.sigmas * deviation <= tol:
+            return found.mean, error
+        more = paths_for(math.sqrt(paths) * deviation, tol)
+        shorter = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * tol, order)
+        told = f"E g = {found.mean:.6g} has an error of {error:.1e}"
+        known = found.mean, error
+        require_possible(more, times[-1] / shorter, told, tol, result=known)
+        paths, step = max(paths, more), shorter
+    raise ToleranceError(f"{told}, above tol = {tol:g}; loosen tol", known)
+
+
+def _mean_bias(scene, times, sampling, order):
+    """Bias of the slope of the mean by the time step, and its standard error."""
+    change, _ = coupled(scene, [times[0], times[-1]], sampling)
+    bias, error = mean_bias(change, order)
+    span = times[-1] - times[0]
+    return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
 
 
 def _short_step(scene):
-    """Step whose bias is below the standard error of the mean; it is not measured."""
+    """First step for a stationary mean."""
     short = tuning.SAMPLED_GAMMA2.step_of_mean * min(1.0, 1 / scene.damping)
     return min(short, registry.scheme(scene).longest_step(scene) / 2)
 

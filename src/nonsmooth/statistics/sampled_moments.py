@@ -13,7 +13,8 @@ from nonsmooth.paths.simulation import simulate
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics import tuning
-from nonsmooth.statistics.asymptotic_variance import stationary_mean
+from nonsmooth.statistics.mean import exact_mean
+from nonsmooth.statistics.sampled_gamma2 import sampled_mean
 
 
 def sampled_moments(
@@ -99,7 +100,7 @@ def sampled_moments(
             f"v(tau)/tau = {size:.3g} at tau = {times[-1]:g} rests on the few of "
             f"{run.attrs['paths']} paths that have moved; choose a longer time"
         )
-    mean, uncertain = stationary_mean(scene, labelled(seed, "stationary"), threads)
+    mean, uncertain = _stationary_mean(scene, labelled(seed, "stationary"), threads)
     w = run["mean"].values - mean * times
     w_error = np.abs(run["mean_bias"]) + np.hypot(run["mean_error"], run["mean_bias_error"])
     v, v_error = run["variance"].values, times * (bias + np.hypot(own, spread))
@@ -109,6 +110,12 @@ def sampled_moments(
     bound = times * (bias + MONTE_CARLO.sigmas * np.hypot(own, spread))
     require_accuracy(times, *found, bound, tol)
     return found
+
+
+def _stationary_mean(scene, seed, threads):
+    if (exact := exact_mean(scene)) is not None:
+        return exact.value, exact.error
+    return sampled_mean(scene, seed=seed, threads=threads)
 
 
 def require_accuracy(

@@ -88,6 +88,19 @@ class SpectralGap:
 
 
 @dataclass(frozen=True)
+class Mean:
+    """The stationary mean of g; tolerances by the number of state variables."""
+
+    # chosen: relative to the root mean square of g; what grids reach within about a minute
+    tolerance: Mapping[int, float] = field(default_factory=lambda: {2: 1e-6, 3: 1e-3, 4: 1e-2})
+    # chosen: the root mean square, which only scales the tolerance, is computed for an n of at most
+    # this
+    soft: float = 1e3
+    # chosen: relative rounding error of a sum over the nodes, far above what closed forms show
+    rounding: float = 1e-12
+
+
+@dataclass(frozen=True)
 class Gamma2:
     """Tolerances of gamma^2 for one to four state variables."""
 
@@ -119,7 +132,8 @@ class SampledGamma2:
     agreement: float = 1e-3
     # chosen: part of the tolerance for the standard errors of the bias
     halving_share: float = 0.4
-    # chosen: step for a stationary mean, times the smaller of 1 and 1/C_b; its bias is below 1e-3
+    # chosen: first step for a stationary mean, times the smaller of 1 and 1/C_b; its bias is about
+    # 1e-3
     step_of_mean: float = 0.02
 
 
@@ -144,6 +158,7 @@ GAMMA2_ON_GRIDS = Gamma2OnGrids()
 MOMENTS_ON_GRIDS = MomentsOnGrids()
 INVARIANT_DENSITY = InvariantDensity()
 SPECTRAL_GAP = SpectralGap()
+MEAN = Mean()
 GAMMA2 = Gamma2()
 SAMPLED_GAMMA2 = SampledGamma2()
 VARIANCE = Variance()

@@ -83,7 +83,8 @@ def crossed(scene: Build, threshold: float, horizon: float, **options) -> Evalua
         run = crossing_probability(scene(), threshold, [horizon], **options, **own).isel(horizon=0)
         value, error = float(run["probability"]), float(run["probability_error"])
         if sampled:
-            error = DEVIATIONS * math.hypot(error, float(run["step_bias_error"]))
+            parts = float(run["standard_error"]), float(run["step_bias_error"])
+            error = DEVIATIONS * math.hypot(*parts)
             error += _LOWER_ORDER * abs(float(run["step_bias"]))
         return Result(value, error)
 

@@ -35,4 +35,4 @@ def test_yielding_displacement():
 def test_bounded_observable():
     """Velocities whose integral stays bounded have gamma^2 = 0, and no extrapolation length."""
     with pytest.raises(ns.NonsmoothError, match="no extrapolation length"):
-        ns.extrapolation_length(ns.Scene("obstacle", potential="x**2/2"))
+        ns.extrapolation_length(ns.Scene("obstacle", potential="x**2/2", observable="y"))

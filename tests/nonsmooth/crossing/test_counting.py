@@ -5,7 +5,12 @@ import pytest
 from scipy import special, stats
 
 import nonsmooth as ns
-from nonsmooth.crossing.counting import first_passage_counts, first_passage_shift, proportion
+from nonsmooth.crossing.counting import (
+    first_passage_counts,
+    first_passage_shift,
+    limits_less_bias,
+    proportion,
+)
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.kernels.random_numbers import BLOCK
@@ -101,6 +106,29 @@ def test_interval_covers_at_its_level(probability, trials):
     covered = (lower <= probability) & (probability <= upper)
     coverage = np.sum(stats.binom.pmf(k, trials, probability)[covered])
     assert abs(coverage - 0.95) < 0.02
+
+
+@pytest.mark.parametrize("away", [0.0, 0.7, 2.0, 5.0, -1.5, -4.0])
+def test_limits_less_a_bias_cover_at_their_level(away):
+    """The bias is a multiple of the standard error and known to half of it; 10^5 samples.
+
+    The coverage is known to 0.0007, so that a false alarm is 4 standard deviations of it away from
+    the limits 0.94 and 0.96. The fraction itself is inside, always.
+    """
+    rng, paths, truth = np.random.default_rng(1), 2000, 0.3
+    spread = np.sqrt(truth * (1 - truth) / paths)
+    crossed = rng.binomial(paths, truth + away * spread, 100_000)
+    bias = away * spread + spread / 2 * rng.standard_normal(len(crossed))
+    lower, upper = limits_less_bias(crossed, paths, bias, np.full(len(crossed), spread / 2))
+    assert np.all((lower <= crossed / paths) & (crossed / paths <= upper))
+    assert abs(np.mean((lower <= truth) & (truth <= upper)) - 0.95) < 0.01
+
+
+def test_limits_without_a_bias_are_those_of_the_fraction():
+    """To the last bit, also where nothing or everything is counted."""
+    crossed = np.array([0, 3, 25, 50])
+    _, lower, upper = proportion(crossed, 50)
+    assert np.allclose(limits_less_bias(crossed, 50, 0 * lower, 0 * lower), (lower, upper))
 
 
 def test_interval_at_the_ends():

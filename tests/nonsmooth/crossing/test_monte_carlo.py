@@ -18,7 +18,7 @@ HORIZONS = np.linspace(0, 2, 11)[1:]
 def test_published_values_at_T_2(p, value, paths):
     """W(sqrt(p) 0.6, 2 p) known from a Laplace-transform computation, n = 100."""
     run = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=p, paths=paths, seed=3, step=0.02)
-    estimate, error = run["probability"][-1], run["probability_error"][-1]
+    estimate, error = run["probability"][-1], run["standard_error"][-1]
     # bias of h = 0.02: 1.2e-3 of gamma^2 times dW/dlog T < 0.45
     allowed = stats.norm.isf(FALSE_ALARM / 2) * error + 6e-4
     assert abs(float(estimate) - value) < allowed
@@ -32,9 +32,9 @@ def test_mirrored_levels_of_an_odd_scene():
     ]
     # tol = 1e-2: three standard errors are three quarters of it, at most those of W = 1/2
     assert all(run.attrs["paths"] <= 40_000 for run in runs)
-    assert all(np.all(3 * run["probability_error"] <= 0.75e-2) for run in runs)
+    assert all(np.all(3 * run["standard_error"] <= 0.75e-2) for run in runs)
     difference = runs[0]["probability"] - runs[1]["probability"]
-    error = np.hypot(*(run["probability_error"] for run in runs))
+    error = np.hypot(*(run["standard_error"] for run in runs))
     assert np.max(np.abs(difference / error)) < stats.norm.isf(FALSE_ALARM / 2 / len(HORIZONS))
 
 
@@ -43,7 +43,7 @@ def test_distance_to_the_limit_falls_with_p():
     limit = ns.crossing_probability(FRICTION, 0.6, [2.0], method="asymptotic")["probability"][0]
     for p, distance in ((1, 0.344), (10, 0.137), (100, 0.0450)):
         run = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=p, paths=5_000, seed=4, step=0.02)
-        error = stats.norm.isf(FALSE_ALARM / 2) * run["probability_error"][-1]
+        error = stats.norm.isf(FALSE_ALARM / 2) * run["standard_error"][-1]
         assert abs(float(limit - run["probability"][-1]) - distance) < error + 1e-3
 
 

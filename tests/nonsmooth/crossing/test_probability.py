@@ -12,13 +12,66 @@ HORIZONS = np.linspace(0, 2, 11)[1:]
 
 
 def test_asymptotic_method_is_the_limit():
-    """W_star with gamma^2 in closed form; its error is that of gamma^2."""
+    """W_star with gamma^2 in closed form; the error of the limit is that of gamma^2."""
     run = ns.crossing_probability(FRICTION, 0.6, [2.0], method="asymptotic")
     assert float(run["probability"][0]) == pytest.approx(W_STAR, abs=5e-8)
-    assert float(run["probability_error"][0]) < 1e-13
+    assert float(run["limit_error"][0]) < 1e-13
     one_sided = ns.crossing_probability(FRICTION, (-np.inf, 0.6), [2.0], method="asymptotic")
     exact = special.erfc(0.6 / np.sqrt(2 * 2.0 * GAMMA2))
     assert float(one_sided["probability"][0]) == pytest.approx(exact, abs=1e-13)
+
+
+def test_errors_mean_the_same_for_every_method():
+    """The error bounds the distance; that of Monte Carlo times 5 (a false alarm in 10^5)."""
+    exact = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=2.0, method="deterministic")
+    for method in ("asymptotic", "corrected", "monte_carlo"):
+        run = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=2.0, method=method)
+        sampled = method == "monte_carlo"
+        error = (5 if sampled else 1) * run["probability_error"] + exact["probability_error"]
+        assert np.all(np.abs(run["probability"] - exact["probability"]) <= error)
+        assert np.all((run["lower"] <= run["probability"]) & (run["probability"] <= run["upper"]))
+        if not sampled:
+            assert np.all(run["lower"] <= exact["upper"])
+            assert np.all(exact["lower"] <= run["upper"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12))
+def test_the_distance_of_the_limit_to_a_finite_p_is_bounded(seed):
+    """On random scenes of one variable, odd and centred ones, p from 0.1 to 10^4."""
+    rng = np.random.default_rng(seed)
+    noise, n, damping = ns.White(rng.uniform(0.5, 2)), 10 ** rng.uniform(0, 3), rng.uniform(0.2, 3)
+    g = ("y", "tanh(2*y)", "y/(1 + abs(y))", "y + max(y, 0)")[seed % 4]
+    drift = ns.mean(ns.Scene("friction", noise, n, damping, observable=g)).value
+    start = {"y": rng.uniform(-1, 1)}
+    scene = ns.Scene("friction", noise, n, damping, observable=f"{g} - ({drift!r})", start=start)
+    gamma = np.sqrt(ns.asymptotic_variance(scene).value)
+    b = gamma * rng.uniform(0.5, 3)
+    threshold = (b, (-b / 2, b), (-np.inf, b))[seed % 3]
+    for p in 10.0 ** np.arange(-1, 5):
+        limit = ns.crossing_probability(scene, threshold, [0.5, 2.0], p, method="asymptotic")
+        exact = ns.crossing_probability(
+            scene, threshold, [0.5, 2.0], p, method="deterministic", tol=1e-5
+        )
+        distance = np.abs(limit["probability"] - exact["probability"])
+        assert np.all(distance <= limit["probability_error"] + exact["probability_error"])
+    assert np.all(limit["probability_error"] < 0.1)  # at p = 10^4 it is no empty bound
+
+
+def test_where_nothing_bounds_the_distance_the_error_is_the_trivial_one():
+    """A g above V, which a single excursion carries across, by the limit and its correction."""
+    beyond = ns.Scene("friction", n=100, observable="y**3")
+    for method in ("asymptotic", "corrected"):
+        run = ns.crossing_probability(beyond, 0.6, [2.0], p=1e4, method=method)
+        W = float(run["probability"][0])
+        assert float(run["probability_error"][0]) >= max(W, 1 - W)
+
+
+def test_derivatives_have_no_limit():
+    """gamma^2 = 0; the line names another g."""
+    scene = ns.Scene("obstacle", observable="y")
+    with pytest.raises(SceneError, match=r"gamma\^2 = 0 .* choose another g, such as x"):
+        ns.crossing_probability(scene, 0.6, [2.0], method="asymptotic")
 
 
 def test_corrected_formula_is_taken_where_its_error_is_small():

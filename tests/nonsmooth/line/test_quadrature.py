@@ -188,7 +188,7 @@ def test_what_has_no_answer_is_refused(observable):
 def test_two_variables_are_refused():
     """The quadrature is over one variable."""
     with pytest.raises(SceneError, match="no deterministic solver"):
-        quadrature.mean(ns.Scene("obstacle"))
+        quadrature.mean(ns.Scene("obstacle", observable="y"))
 
 
 @pytest.mark.parametrize("n", [1.0, 100.0, 1e6, np.inf])

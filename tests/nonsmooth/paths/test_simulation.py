@@ -44,7 +44,7 @@ def test_penalised_paths_converge_to_the_limit_on_the_same_noise(model, rate, n,
 def test_obstacle_has_the_gibbs_law_with_twice_the_damping(n):
     """Density of (y, x) proportional to exp(-2 C_b H_n), the mended formula; C_b = 0.7."""
     damping, paths = 0.7, 20_000
-    scene = ns.Scene("obstacle", n=n, damping=damping, potential="x**2/2")
+    scene = ns.Scene("obstacle", n=n, damping=damping, potential="x**2/2", observable="y")
     # the slowest rate is about C_b/2: exp(-14) of the start is left
     run = simulate(scene, 40.0, step=0.1, paths=paths, seed=5, times=[40.0], keep="paths")
     y, x = run["y"].values[:, -1], run["x"].values[:, -1]

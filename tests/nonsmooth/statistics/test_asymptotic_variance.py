@@ -1,31 +1,12 @@
-"""The public function for gamma^2: its method, the mean that it subtracts, and gamma^2 = 0."""
-
-import re
+"""The public function for gamma^2: its method, and gamma^2 = 0."""
 
 import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.statistics.asymptotic_variance import stationary_mean
-from references import FRICTION, OBSTACLE
-
-
-def test_mean_by_symmetry_quadrature_and_simulation():
-    """0 for odd g; E y^2 of friction; E y^2 = 1/2 of the obstacle."""
-    assert stationary_mean(OBSTACLE) == (0.0, 0.0)
-    exact, error = stationary_mean(ns.Scene("friction", observable="y**2"))
-    assert 0 < error < 1e-14
-    assert 0 < exact < 0.5
-    value, error = stationary_mean(ns.Scene("obstacle", potential="x**2/2", observable="y**2"))
-    assert abs(value - 0.5) < 5 * error + 1e-3
-    with pytest.raises(SceneError, match="subtract"):
-        ns.crossing_probability(
-            ns.Scene("obstacle", potential="x**2/2", observable="y**2"),
-            0.6,
-            [1.0],
-            method="asymptotic",
-        )
+from nonsmooth.errors import ToleranceError
+from nonsmooth.statistics.gamma2_on_grids import gamma2
+from references import FRICTION
 
 
 def test_the_method_follows_from_the_tolerance():
@@ -58,15 +39,16 @@ COBOUNDARIES = [
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize(("model", "g", "U"), COBOUNDARIES)
-def test_derivatives_of_bounded_functions_are_refused(seed, model, g, U):
-    """int_0^t g stays bounded, so that gamma^2 = 0; the best value is that within its error."""
+def test_derivatives_of_bounded_functions_have_no_variance(seed, model, g, U):
+    """int_0^t g stays bounded: gamma^2 = 0 by its formula, and on grids within the error."""
     rng = np.random.default_rng(seed)
     a, n, damping = rng.uniform(0.5, 2), 10 ** rng.uniform(0, 3), rng.uniform(0.5, 2)
     g, U = (formula.format(a=round(a, 3)) for formula in (g, U))
     scene = ns.Scene(model, n=n, damping=damping, potential=U, observable=g)
+    for method in (None, "deterministic", "monte_carlo"):
+        found = ns.asymptotic_variance(scene, method=method)
+        assert (found.value, found.error, found.method) == (0.0, 0.0, "g is a derivative in x")
     with pytest.raises(ToleranceError, match="stays bounded") as refused:
-        ns.asymptotic_variance(scene, 1e-2, "deterministic")
-    value, error = map(
-        float, re.findall(r"gamma.2 = (\S+) has an error of ([^,]+),", str(refused.value))[0]
-    )
-    assert 0 <= value <= error < 1e-3
+        gamma2(scene, 1e-2)
+    value, error = refused.value.result
+    assert max(value, 0.0) <= error < 1e-3

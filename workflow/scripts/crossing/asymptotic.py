@@ -25,7 +25,7 @@ def limit(scene, threshold, horizon, outputs):
             "probability": ("horizon", solution["probability"].values, "W_star(b / gamma, T)"),
             "probability_error": (
                 "horizon",
-                solution["probability_error"].values,
+                solution["limit_error"].values,
                 "error inherited from gamma^2",
             ),
         },

@@ -37,7 +37,7 @@ def pathwise(models, n, horizon, doublings, reference, paths, rounds):
         return BrownianPaths(scene, horizon, reference, paths, seed)
 
     for (model, potential), penalization in product(models.items(), n):
-        scene = Scene(model, n=penalization, potential=potential)
+        scene = Scene(model, n=penalization, potential=potential, observable="y")
         panel = model.replace("_", "-")
         name = r"$n = \infty$" if penalization == float("inf") else f"$n = {penalization:g}$"
         references[panel] = 0.0, 0.0

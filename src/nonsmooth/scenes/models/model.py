@@ -127,6 +127,11 @@ class Model:
         return self.argument == x and self.equation == y
 
     @property
+    def default_observable(self) -> str:
+        """The observable of a scene that names none: its integral must not stay bounded."""
+        return "x" if self.in_potential else "y"
+
+    @property
     def wall(self) -> float:
         """The displacement that n = inf does not let the oscillator pass, inf if there is none."""
         knot, _, outer = self.penalty.at(float("inf"))

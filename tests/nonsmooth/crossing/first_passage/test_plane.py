@@ -107,6 +107,6 @@ class TestCrossing:
         found = ns.crossing_probability(scene, level, horizons, p, method="deterministic", tol=2e-3)
         assert np.all(found.probability_error < 2e-3)
         sample = ns.crossing_probability(scene, level, horizons, p, step=0.02, paths=paths, seed=7)
-        allowed = 4.5 * sample.probability_error + np.abs(sample.step_bias)
+        allowed = 4.5 * sample.standard_error + np.abs(sample.step_bias)
         allowed += 4.5 * sample.step_bias_error + found.probability_error
         assert np.all(np.abs(found.probability - sample.probability) < allowed)

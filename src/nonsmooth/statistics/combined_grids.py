@@ -1,0 +1,197 @@
+"""A functional of the invariant measure or of a Poisson solution, by the combination technique.
+
+It finds out how finely each variable must be resolved. The error is what the grids beyond those
+combined would add.
+"""
+
+import functools
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from nonsmooth.errors import ToleranceError
+from nonsmooth.grids import tuning as grid_tuning
+from nonsmooth.grids.combination_technique import Combination
+from nonsmooth.grids.mesh.box import narrowed
+from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, points
+from nonsmooth.progress import counter
+from nonsmooth.refine import until_agreement
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import x, y
+from nonsmooth.statistics import tuning
+
+
+@dataclass(frozen=True)
+class Combined:
+    """A functional on combined grids.
+
+    Attributes
+    ----------
+    value, error : float
+    scene : Scene
+        With the n that was solved with.
+    grid : Grid
+        The costliest of those combined.
+    accuracy : float
+        Residual of the solvers.
+    """
+
+    value: float
+    error: float
+    scene: Scene
+    grid: Grid
+    accuracy: float
+
+
+def combined(
+    scene: Scene,
+    tol: float,
+    functional: Callable[[Scene, Grid, float], float],
+    allowed: Callable[[float, float], float],
+    floor: Callable[[Scene, Grid, float], float] = lambda scene, grid, accuracy: 0.0,
+) -> Combined:
+    """Compute a functional to a tolerance, if that is affordable.
+
+    Parameters
+    ----------
+    scene : Scene
+        With two to four state variables. n = inf is approached by a large n and the known rate of
+        convergence.
+    tol : float
+    functional : callable
+        Takes a scene with a finite n, a grid and the residual of the solver; returns a value.
+    allowed : callable
+        Takes a value and a tolerance; returns the error that it may have.
+    floor : callable, optional
+        Takes the arguments of `functional`; returns the error that cancelling terms leave. A value
+        below its error is not refined further once that is below the floor.
+
+    Returns
+    -------
+    Combined
+        The error is what grids beyond those combined may add (`Combination.error`), plus the
+        effects of the finite box, of the residuals and of a finite n. It may be above what is
+        allowed.
+
+    Raises
+    ------
+    ToleranceError
+        If the equations of the coarsest grid cannot be solved.
+    """
+    if not math.isinf(scene.n):
+        return _combined(scene, tol, functional, allowed, floor)
+    chosen = tuning.GAMMA2_ON_GRIDS
+    # the rates of convergence are n^(-1/2) where a wall is hit elastically, else 1/n
+    elastic = scene.mechanics.in_potential
+    stiff = chosen.stiff_elastic if elastic else chosen.stiff
+    softer = scene.with_n(chosen.softer * stiff)
+    found = _combined(scene.with_n(stiff), tol / 2, functional, allowed, floor)
+    fitted_below = replace(found.grid, ends=narrowed(softer, found.grid.ends, found.grid.ends))
+    gap = functional(found.scene, found.grid, found.accuracy) - functional(
+        softer, fitted_below, found.accuracy
+    )
+    rest = gap / ((10 if elastic else 100) - 1)
+    error = found.error + (0.2 if elastic else 1.0) * abs(rest)
+    return replace(found, value=found.value + rest, error=error)
+
+
+def _combined(scene, tol, functional, allowed, floor):
+    """Compute the functional for a finite n."""
+    chosen, count = tuning.GAMMA2_ON_GRIDS, scene.dimension
+    coarse = fitted(scene, depth_for(tol), chosen.fitted[count])
+    coarse = coarse.all_raised(chosen.coarse[count] - chosen.fitted[count])
+    on = functools.partial(functional, scene)
+    base, accuracy, residual = _on_coarsest(coarse, tol, on, allowed)
+    larger = on(coarse.enlarged(), accuracy)
+    directions = _directions(coarse)
+
+    def grid(index):
+        levels = {s: level for part, level in zip(directions, index, strict=True) for s in part}
+        return replace(coarse, levels=levels)
+
+    def error(combination):
+        rest = residual * abs(allowed(combination.value, 1.0))
+        return combination.error + 2 * abs(larger - base) + rest
+
+    combination = Combination(
+        tuple(coarse.levels[part[0]] for part in directions),
+        base,
+        lambda index: on(grid(index), accuracy),
+        lambda index: points(scene, grid(index)),
+    )
+
+    least = functools.cache(lambda: floor(scene, coarse, accuracy))
+
+    def enough(combination):
+        value, bound = combination.value, error(combination)
+        return bound <= allowed(value, tol) or (value <= bound < math.inf and bound <= least())
+
+    def no_digit(combination):
+        return error(combination) > abs(allowed(combination.value, 1.0))
+
+    largest = grid_tuning.TENSOR_GRIDS.largest[count]
+    _enlarge(combination, error, enough, no_digit, largest, 1 + len(directions))
+    best = grid(combination.dearest())
+    return Combined(combination.value, error(combination), scene, best, accuracy)
+
+
+def _enlarge(combination, error, enough, no_digit, largest, patience):
+    """Add grids to a combination until it is enough, or there is no hope of that.
+
+    There is none if nothing affordable is left, or no digit is right and refining every variable
+    has not made the error smaller.
+    """
+    least, stalled = math.inf, 0
+    left = tuning.GAMMA2_ON_GRIDS.work * largest
+    with counter("grids") as advance:
+        while not enough(combination):
+            try:
+                cost = combination.refine(min(largest, left))
+            except ToleranceError:  # a finer grid on which the iteration does not converge
+                return
+            left -= cost
+            reached = error(combination)
+            stalled = 0 if reached < least else stalled + 1
+            least = min(least, reached)
+            if not cost or (stalled >= patience and no_digit(combination)):
+                return
+            advance(1)
+
+
+def _directions(grid):
+    """Group the variables that are refined together.
+
+    Displacement and velocity are. The motion mixes them: what refining both changes beyond the sum
+    of the changes by either is not small, as the combination technique needs it to be. The
+    variables of the noise are refined one by one.
+    """
+    noise = [(symbol,) for symbol in grid.levels if symbol not in (y, x)]
+    return [*noise, tuple(symbol for symbol in grid.levels if symbol in (y, x))]
+
+
+def _on_coarsest(grid, tol, on, allowed):
+    """Return the functional on a grid, the residual it needs, and the error this leaves.
+
+    That error is relative to what is allowed for a tolerance of 1. The norm of a residual says
+    little about the error: the residual is largest where the invariant measure has hardly any mass,
+    and may stagnate there. So it is reduced until the functional no longer changes.
+    """
+    chosen = tuning.GAMMA2_ON_GRIDS
+    accuracy = tol * chosen.residual
+    if len(grid.levels) <= 2:
+        return on(grid, accuracy), accuracy, accuracy
+    refined = until_agreement(
+        _tenths(accuracy),
+        lambda accuracy: (on(grid, accuracy), accuracy),
+        lambda found: abs(found[-1][0] - found[-2][0]) / abs(allowed(found[-1][0], 1.0)),
+        met=lambda _, change: change <= chosen.iteration * tol,
+    )
+    # the smaller residual changed so little that the one before is good enough
+    value, accuracy = refined.solutions[-2]
+    return value, accuracy, max(2 * refined.error, accuracy)
+
+
+def _tenths(number: float) -> Iterator[float]:
+    while True:
+        yield number
+        number = number / 10
