@@ -71,7 +71,7 @@ diagrams: env ## measure speed against error anew, and refresh the copies in doc
 # uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute
 define environment
 $(PYTHON) -m venv $(1)
-$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
+$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --compile-bytecode --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
 endef
 
 env: $(VENV)/installed ## the environment alone, in .venv
@@ -80,7 +80,7 @@ $(VENV)/installed: environment-lock.txt pyproject.toml
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'nonsmooth needs Python >= 3.11; set PYTHON=python3.11 or newer')"
 	$(call environment,$(VENV),-r environment-lock.txt)
 	$(BIN)/python -m pip install --disable-pip-version-check --quiet --no-deps --no-build-isolation --editable .
-	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m nonsmooth
+	$(BIN)/python -m nonsmooth
 	touch $@
 
 # the manual has an environment of its own
