@@ -211,10 +211,11 @@ def limits_less_bias(
     fraction, low, high = proportion(crossed, paths, level)
     two_sided = scipy.special.ndtri((1 + level) / 2)
     below, above = (
-        np.hypot(distance, two_sided * bias_error) for distance in (fraction - low, high - fraction)
+        np.hypot(own, two_sided * bias_error) for own in (fraction - low, high - fraction)
     )
     # how many standard errors the bias is, at least those of the two-sided interval
-    away = two_sided * np.maximum(np.abs(bias) / np.where(bias > 0, above, below), 1.0)
+    distance = np.maximum(np.where(bias > 0, above, below), np.finfo(float).tiny)
+    away = two_sided * np.maximum(np.abs(bias) / distance, 1.0)
     other = scipy.special.ndtri(np.minimum(level + scipy.special.ndtr(-away), (1 + level) / 2))
     other = np.where(away > two_sided, other / two_sided, 1.0)
     centre = fraction - bias
