@@ -17,7 +17,7 @@ from sympy import Symbol
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import tuning
-from nonsmooth.grids.direct_solver import factorise
+from nonsmooth.grids.direct_solver import SparseFactors
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
@@ -68,7 +68,7 @@ class AlternatingSolver:
         self._transport = self._transport_matrices(scene, {forcing: axes[forcing]}, rest)
         self._shift = shift
         identity = sp.eye_array(self._oscillator)
-        self._resolvents = [factorise(shift * identity - t) for t in self._transport]
+        self._resolvents = [SparseFactors(shift * identity - t) for t in self._transport]
         self._noise_factors = {
             sign: scipy.linalg.lu_factor(shift * np.eye(len(part)) - part)
             for sign, part in self._noise.items()

@@ -1,6 +1,15 @@
-"""The Poisson equation on tensor grids with up to two variables, by sparse factorisation."""
+"""The Poisson equation on tensor grids with up to two variables, by sparse factorisation.
 
-from collections.abc import Mapping
+scipy's SuperLU frees memory only in the thread that has allocated it; elsewhere the memory is lost.
+And Python hears Ctrl-C only in its main thread, between two of its own instructions. So factors are
+made in a thread of their own, for which the caller waits, and go back to it to be freed.
+"""
+
+import queue
+import threading
+import weakref
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,32 +20,79 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.progress import interruptible
 from nonsmooth.scenes.scene import Scene
 
 
-def factorise(matrix: sp.sparray) -> spla.SuperLU:
+class _Workshop:
+    """A thread that does one task after the other."""
+
+    def __init__(self) -> None:
+        self._tasks: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        threading.Thread(target=self._work, daemon=True).start()
+
+    def _work(self):
+        while True:
+            self._tasks.get()()
+
+    def put(self, task: Callable[[], None]) -> None:
+        """Do a task later."""
+        self._tasks.put(task)
+
+
+class SparseFactors:
     """Sparse LU of a matrix whose pattern is symmetric and whose diagonal is not small.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (n, n)
 
     Raises
     ------
     ToleranceError
         If the memory does not hold the factors.
     """
-    try:
-        return interruptible(
-            lambda: spla.splu(
-                matrix.tocsc(),
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=1e-3,
-                options={"SymmetricMode": True},
+
+    _workshop: _Workshop | None = None
+
+    def __init__(self, matrix: sp.sparray):
+        self._made: list[spla.SuperLU] = []
+        workshop = SparseFactors._workshop = SparseFactors._workshop or _Workshop()
+        done: Future = Future()
+        workshop.put(_task(matrix, self._made, done))
+        # the task must not refer to this object, or it would never be freed
+        weakref.finalize(self, workshop.put, self._made.clear).atexit = False
+        try:
+            done.result()
+        except MemoryError:
+            raise ToleranceError(
+                f"the memory does not hold the factors of {matrix.shape[0]} equations; choose a "
+                "larger tol or Monte Carlo, or free memory"
+            ) from None
+        except KeyboardInterrupt:
+            SparseFactors._workshop = None  # it goes on with what nobody waits for any more
+            raise
+
+    def solve(self, right: np.ndarray, trans: str = "N") -> np.ndarray:
+        """Solve with the matrix, or with its transpose if `trans` is "T"."""
+        return self._made[0].solve(right, trans=trans)
+
+
+def _task(matrix, made, done):
+    def factorise():
+        try:
+            made.append(
+                spla.splu(
+                    matrix.tocsc(),
+                    permc_spec="MMD_AT_PLUS_A",
+                    diag_pivot_thresh=1e-3,
+                    options={"SymmetricMode": True},
+                )
             )
-        )
-    except MemoryError:
-        raise ToleranceError(
-            f"the memory does not hold the factors of {matrix.shape[0]} equations; choose a larger "
-            "tol or Monte Carlo, or free memory"
-        ) from None
+            done.set_result(None)
+        except BaseException as error:
+            done.set_exception(error)
+
+    return factorise
 
 
 class _Factors:
@@ -44,7 +100,7 @@ class _Factors:
 
     def __init__(self, matrix):
         self.matrix = matrix
-        self.lu = factorise(matrix)
+        self.lu = SparseFactors(matrix)
 
     def solve(self, right, trans="N"):
         matrix = self.matrix.T if trans == "T" else self.matrix
@@ -113,7 +169,7 @@ class DirectSolver:
         key = shift, parity if self.mirrored else EVEN
         if key not in self._factors:
             matrix = self.matrix(parity)
-            self._factors[key] = factorise(shift * sp.eye_array(matrix.shape[0]) - matrix)
+            self._factors[key] = SparseFactors(shift * sp.eye_array(matrix.shape[0]) - matrix)
         return self._factors[key].solve(values)
 
     def stationary(self, accuracy: float | None = None) -> np.ndarray:

@@ -10,7 +10,7 @@ import scipy.sparse.linalg
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.alternating_solver import AlternatingSolver
-from nonsmooth.grids.direct_solver import DirectSolver, factorise
+from nonsmooth.grids.direct_solver import DirectSolver, SparseFactors
 from nonsmooth.grids.generator import assemble, evaluate
 from nonsmooth.grids.mesh.axes import axes as axes_of
 from nonsmooth.grids.mesh.axes import variables
@@ -88,4 +88,20 @@ def test_a_lack_of_memory_is_told_in_one_line(monkeypatch):
 
     monkeypatch.setattr(scipy.sparse.linalg, "splu", full)
     with pytest.raises(ToleranceError, match="does not hold the factors of 3 equations"):
-        factorise(scipy.sparse.eye_array(3))
+        SparseFactors(scipy.sparse.eye_array(3))
+
+
+def test_factors_are_freed():
+    """Factors made one after the other take the memory of a few, wherever they are dropped."""
+    import psutil
+
+    size = 100
+    line = scipy.sparse.diags_array([-1.0, 2.1, -1.0], offsets=[-1, 0, 1], shape=(size, size))
+    plane = scipy.sparse.kronsum(line, line)
+    taken = []
+    for _ in range(20):
+        factors = SparseFactors(plane)
+        factors.solve(np.ones(size**2))
+        taken.append(psutil.Process().memory_info().rss)
+    one = 12 * scipy.sparse.linalg.splu(plane.tocsc()).nnz  # a number and its row
+    assert taken[-1] - taken[4] < 5 * one
