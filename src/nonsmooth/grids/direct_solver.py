@@ -127,7 +127,7 @@ class DirectSolver:
         self.generator = assemble(scene, axes)
         self.size = self.generator.shape[0]
         self.mirrored = mirrored
-        self._factors: dict[int | tuple[float, int], _Factors] = {}
+        self._factors: dict[int | tuple[float, int], SparseFactors | _Factors] = {}
 
     def fold(self, whole: np.ndarray) -> np.ndarray:
         """Restrict a function to the first half of the grid."""
