@@ -26,6 +26,13 @@ VALID: dict[str, dict[str, str]] = {
         "seed": "1",
         "threads": "1",
     },
+    "mean": {
+        "scene": _FRICTION,
+        "tol": "0.3",
+        "method": '"monte_carlo"',
+        "seed": "1",
+        "threads": "1",
+    },
     "variance": {
         "scene": _FRICTION,
         "times": "[0.5, 1.0]",

@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from nonsmooth.errors import AssumptionWarning, NonsmoothError
+from nonsmooth.errors import AccuracyWarning, AssumptionWarning, NonsmoothError
 
 DEVIATIONS = 5.0  # standard errors; a sampled result is farther off with a probability of 6e-7
 
@@ -87,6 +87,7 @@ def examine(case: Case, paths: int) -> Outcome:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("ignore")
         warnings.simplefilter("always", AssumptionWarning)
+        warnings.simplefilter("error", AccuracyWarning)  # what misses its accuracy is refused
         try:
             found = case.evaluate(paths)
         except NonsmoothError as refusal:
