@@ -9,6 +9,7 @@ import sympy
 
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import boxed, plane_ordinates
+from nonsmooth.kinetic.tuning import GibbsLevel, PlaneLevel
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.schemes import strang
 from nonsmooth.scenes import equations
@@ -47,8 +48,8 @@ def coarse_ordinates(scene):
     """Grid of a scene with two variables for the kinetic equation; Gibbs weights for obstacles."""
     ends = boxed(scene)
     if scene.model == "obstacle":
-        return gibbs_ordinates(scene, ends, 0)
-    return plane_ordinates(scene, ends, 0, 1.0)
+        return gibbs_ordinates(scene, ends, GibbsLevel(12, 5, (0.3, 1.0), (0.5, 1.0), 1e-5))
+    return plane_ordinates(scene, ends, PlaneLevel(4, 3, 8.0, 0.1, 1e-5), 1.0)
 
 
 class Repository:

@@ -9,14 +9,17 @@ h(x, Z) = E exp(-z tau), Z the state, solves
 This is the equation of one-dimensional radiative transfer: x is the depth in a slab, g the
 direction cosine, A the scattering. The methods here are those of that field. The state is
 discretised by nodes (discrete ordinates). In x the solution is exact with Case's elementary
-solutions, and of high order with adding and doubling of slabs. The manual page is
+solutions. For two variables these are taken in a basis of few combinations of nodes, which adding
+and doubling of slabs finds. The manual page is
 `docs/methods/kinetic.md`.
 
 - `ordinates_line.ordinates`: nodes of one state variable, in the space L^2(m).
 - `ordinates_plane.plane_ordinates`, `ordinates_gibbs.gibbs_ordinates`: nodes of two, in general
   and where the invariant density is known.
 - `case_modes.first_passage`, `case_modes.waves`: elementary solutions, for one variable.
-- `adding_doubling.slab`, `adding_doubling.half_space`: reflection and transmission, for two.
+- `adding_doubling.slabs`, `adding_doubling.fields`: reflection and transmission, and solutions at
+  many depths, for two.
+- `reduced_ordinates.reduced`: the basis that they span, and the transform in it.
 - `tail_descent.tail`: a start so far in the tails that the modes cancel; the state falls from there
   to a level near the bulk.
 - `tail_equation.equation`: the kinetic equation on the way down, marched in x.

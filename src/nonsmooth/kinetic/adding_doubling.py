@@ -4,15 +4,17 @@ In (z - A) h = g d_x h, h is given where the flow leaves a slab: at the upper fa
 lower for g < 0. Its values where the flow enters depend linearly on these: the matrix S transmits
 from the other face, R reflects from the same one. If g and the drift are odd, one R and one S serve
 both faces. Two slabs are added to one of twice the thickness. This is stable, since no slab
-amplifies for Re z >= 0, whereas the modes of `case_modes` are ill-conditioned for a generator that
-is not self-adjoint. See van de Hulst, Multiple Light Scattering (1980), chapter 4.
+amplifies for Re z >= 0. See van de Hulst, Multiple Light Scattering (1980), chapter 4.
 """
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from scipy.linalg import lu_factor, lu_solve
 
-from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
@@ -32,70 +34,106 @@ class Slab:
     reflection: np.ndarray
     transmission: np.ndarray
 
+    @cached_property
+    def _factors(self):
+        """Of 1 - R and 1 + R: what two faces that look at each other do to even and odd parts."""
+        one = np.eye(len(self.reflection))
+        return [lu_factor(one - sign * self.reflection, check_finite=False) for sign in (1, -1)]
+
     def doubled(self) -> "Slab":
         """Add two of them."""
         R, S = self.reflection, self.transmission
-        one = np.eye(len(R))
-        even = S @ np.linalg.solve(one - R, S)
-        odd = S @ np.linalg.solve(one + R, S)
+        even, odd = (S @ lu_solve(factors, S, check_finite=False) for factors in self._factors)
         return Slab(R + (even - odd) / 2, (even + odd) / 2)
 
+    def between(self, below: np.ndarray, above: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Values at the face between two of them.
 
-def slab(grid: PlaneOrdinates, z: complex, thickness: float, doublings: int) -> Slab:
-    """Make a slab by doubling a thin one.
+        Parameters
+        ----------
+        below, above : numpy.ndarray, shape (k,)
+            Where the flow leaves at the outer faces.
 
-    Its error falls like 8^-doublings where h changes little within the thin slab.
+        Returns
+        -------
+        up, down : numpy.ndarray, shape (k,)
+            Where the flow enters the slab above, and that below.
+        """
+        even, odd = (
+            lu_solve(factors, self.transmission @ values, check_finite=False)
+            for factors, values in zip(self._factors, (above + below, above - below), strict=True)
+        )
+        return (even + odd) / 2, (even - odd) / 2
+
+
+def slabs(grid: PlaneOrdinates, z: complex, thickness: float) -> Iterator[Slab]:
+    """Yield slabs, each twice as thick as the one before.
 
     Parameters
     ----------
     grid : PlaneOrdinates
     z : complex
     thickness : float
-    doublings : int
+        Of the first slab. Its error falls like the cube of it where h changes little within the
+        slab.
+    """
+    # Richardson extrapolation of implicit Euler steps to order 2, which damps what changes fast
+    ones = np.eye(len(grid.speeds))
+    scattering = {parity: part.applied(ones) for parity, part in grid.eliminated(z).items()}
+    one, two = (_step(scattering, grid.speeds, thickness / k) for k in (1, 2))
+    two = two.doubled()
+    made = Slab(2 * two.reflection - one.reflection, 2 * two.transmission - one.transmission)
+    while True:
+        yield made
+        made = made.doubled()
+
+
+def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> np.ndarray:
+    """Solve the kinetic equation in a slab, with h = 1 where the flow leaves.
+
+    Parameters
+    ----------
+    grid : PlaneOrdinates
+    z : complex
+        With Re z > 0.
+    thickness : float
+        Infinite for a half space.
+    thin : float
+        Thickness, at most, of the first slab, from which the others are made.
 
     Returns
     -------
-    Slab
+    numpy.ndarray, shape (k, m)
+        h at many depths, on the nodes with g > 0 or their mirror images; depths crowd at the faces.
+        Once a slab is opaque, it stands for thicker ones.
     """
-    thin = thickness / 2**doublings
-    # Richardson extrapolation of implicit Euler steps to order 3, which damps what changes fast
-    scattering = {parity: grid.scattering(z, parity) for parity in (EVEN, ODD)}
-    one, two, four = (_step(scattering, grid.speeds, thin / k) for k in (1, 2, 4))
-    two, four = two.doubled(), four.doubled().doubled()
-    made = Slab(
-        (one.reflection - 6 * two.reflection + 8 * four.reflection) / 3,
-        (one.transmission - 6 * two.transmission + 8 * four.transmission) / 3,
-    )
-    for _ in range(doublings):
-        made = made.doubled()
-    return made
-
-
-def half_space(made: Slab) -> np.ndarray:
-    """Reflection of a half space, made by doubling a slab until nothing passes it.
-
-    Raises
-    ------
-    ToleranceError
-        If the slab does not absorb.
-    """
-    for _ in range(tuning.ADDING_DOUBLING.most):
-        if np.max(np.abs(made.transmission)) < tuning.ADDING_DOUBLING.opaque:
-            return made.reflection
-        made = made.doubled()
-    raise ToleranceError("the half space absorbs nothing; use method='monte_carlo'")
+    settings, ones = tuning.ADDING_DOUBLING, grid.ones[: len(grid.speeds)]
+    made = []
+    if math.isfinite(thickness):
+        doublings = max(settings.fewest, math.ceil(math.log2(thickness / thin)))
+        thin = thickness / 2**doublings
+    for slab in slabs(grid, z, thin):
+        made.append(slab)
+        if math.isfinite(thickness) and len(made) > doublings:
+            break
+        if len(made) > settings.fewest and np.max(np.abs(slab.transmission)) < settings.opaque:
+            break
+    found = [ones, (made[-1].reflection + made[-1].transmission) @ ones]
+    parts = [(len(made) - 2, ones, ones)]
+    while parts:
+        size, below, above = parts.pop()
+        up, down = made[size].between(below, above)
+        found += [up, down]
+        if size > 0:  # the part at the face, and in the middle only large ones
+            parts.append((size - 1, below, down))
+            if size > len(made) - settings.resolved:
+                parts.append((size - 1, up, above))
+    return np.array(found).T
 
 
 def _step(scattering, speeds, thickness):
     """Make the slab of one implicit Euler step: in it h is taken to be h where the flow enters."""
-    many, sign = len(speeds), np.sign(speeds)
-    rate = np.abs(speeds) / thickness
-    found = []
-    for parity in (EVEN, ODD):
-        matrix = scattering[parity].copy()
-        matrix[np.arange(many), np.arange(many)] += rate
-        right = np.zeros((len(matrix), many), matrix.dtype)
-        right[np.arange(many), np.arange(many)] = rate
-        found.append(np.linalg.solve(matrix, right)[:many])
-    even, odd = found[0], sign[:, None] * found[1] * sign
+    sign, rate = np.sign(speeds), np.diag(np.abs(speeds) / thickness)
+    even, odd = (np.linalg.solve(scattering[p] + rate, rate) for p in (EVEN, ODD))
+    odd = sign[:, None] * odd * sign
     return Slab((even - odd) / 2, (even + odd) / 2)

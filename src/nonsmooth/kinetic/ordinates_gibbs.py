@@ -38,7 +38,7 @@ def applies(scene: Scene) -> bool:
     )
 
 
-def gibbs_ordinates(scene: Scene, ends: dict, level: int) -> PlaneOrdinates:
+def gibbs_ordinates(scene: Scene, ends: dict, level: tuning.GibbsLevel) -> PlaneOrdinates:
     """Discretise a scene to which this `applies`, with finite n and odd g and drift.
 
     Parameters
@@ -46,22 +46,24 @@ def gibbs_ordinates(scene: Scene, ends: dict, level: int) -> PlaneOrdinates:
     scene : Scene
     ends : dict
         Half widths of the box.
-    level : int
-        Of resolution, from 0.
+    level : GibbsLevel
+        Resolution.
 
     Returns
     -------
     PlaneOrdinates
         Values are coefficients of the Hermite polynomials at nodes x > 0.
     """
-    settings = tuning.GIBBS_ORDINATES.levels[level]
-    many, where = settings.hermite, scene.start.get("x", 0.0)
+    many, where = level.hermite, scene.start.get("x", 0.0)
     scale = scene.noise.sigma / math.sqrt(2 * scene.damping)
-    elements = _elements(scene, _edges(scene, ends[x], settings), settings.degree, scale)
+    elements = _elements(scene, _edges(scene, ends[x], level), level.degree, scale)
     masses = [m[len(m) // 2 :] for m in elements.masses]
     nodes = [at[len(at) // 2 :] for at in elements.nodes]
     g = [vectorised(scene.numerical_observable(), (x,))(at) for at in nodes]
-    kept = [_kept(f, m, at <= abs(where)) for f, m, at in zip(g, masses, nodes, strict=True)]
+    kept = [
+        _kept(np.abs(f) * m, level.dropped, (f != 0) & (at <= abs(where)))
+        for f, m, at in zip(g, masses, nodes, strict=True)
+    ]
     polynomials = _hermite(scene.start.get("y", 0.0) / scale, many)
     generator, start = {}, {}
     for parity in (ODD, EVEN):
@@ -78,7 +80,8 @@ def gibbs_ordinates(scene: Scene, ends: dict, level: int) -> PlaneOrdinates:
     # `order` is that of EVEN, the last parity of the loop
     ones = (order < len(nodes[0])).astype(float)
     speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
-    return PlaneOrdinates(speeds, ones, way, size - len(speeds), generator, start)
+    weights = np.concatenate([masses[k % 2][kept[k % 2]] for k in range(many)])
+    return PlaneOrdinates(speeds, weights / masses[0].sum(), ones, way, generator, start)
 
 
 def _blocks(elements, polynomials, parity, where, damping):
@@ -225,12 +228,10 @@ def _half(matrix, parity):
     return _folded(matrix, parity)[middle + (centre if parity == EVEN else 0) :]
 
 
-def _kept(g, masses, near):
-    """Find the nodes that carry the mean of |g|, and those with g != 0 up to the start."""
-    flow = np.abs(g) * masses
+def _kept(flow, dropped, near):
+    """Find the nodes that carry the flow, but for a small part of it, and those up to the start."""
     order = np.argsort(flow)
-    carrying = np.cumsum(flow[order]) > tuning.PLANE_ORDINATES.dropped * flow.sum()
-    return np.union1d(order[carrying], np.flatnonzero(near & (g != 0)))
+    return np.union1d(order[np.cumsum(flow[order]) > dropped * flow.sum()], np.flatnonzero(near))
 
 
 def _hermite(point, many):

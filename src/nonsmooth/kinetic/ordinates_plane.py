@@ -29,19 +29,19 @@ from nonsmooth.scenes.scene import Scene
 class PlaneOrdinates:
     """Half of a grid, functions being odd or even in the state.
 
-    Its unknowns are ordered: first those of nodes that move, then `held` ones, then the others.
+    Its unknowns are ordered: first those of nodes that move, then the others.
 
     Attributes
     ----------
     speeds : numpy.ndarray, shape (k,)
         g at the nodes that move.
+    masses : numpy.ndarray, shape (k,)
+        Positive weights of these nodes in whose inner product the generator hardly amplifies: the
+        invariant measure, and where paths go soon after the start.
     ones : numpy.ndarray
         The function 1, in the unknowns of even functions.
     way : float
         How far int g goes within a relaxation time: the standard deviation of g times 1/C_b.
-    held : int
-        Number of unknowns at nodes that stand still, g = 0, but are not eliminated, because z - A
-        restricted to them may be singular.
     generator : dict
         A for each parity, sparse.
     start : dict
@@ -49,33 +49,49 @@ class PlaneOrdinates:
     """
 
     speeds: np.ndarray
+    masses: np.ndarray
     ones: np.ndarray
     way: float
-    held: int
     generator: dict
     start: dict
 
-    def scattering(self, z: complex, parity: int) -> np.ndarray:
-        """Return z - A on the nodes that move and those held, the others being eliminated."""
-        many, A = len(self.speeds) + self.held, self.generator[parity]
-        matrix = z * sp.eye_array(A.shape[0], format="csc") - A
-        own = matrix[:many, :many].toarray()
-        if many >= A.shape[0]:
-            return own
-        across = matrix[many:, :many].toarray()
-        return own - matrix[:many, many:] @ spla.splu(matrix[many:, many:].tocsc()).solve(across)
+    def eliminated(self, z: complex) -> dict:
+        """Eliminate the nodes that stand still, for each parity; see `Scattering`."""
+        return {parity: Scattering(self, z, parity) for parity in (EVEN, ODD)}
 
-    def start_row(self, z: complex, parity: int) -> np.ndarray:
-        """Row vector that interpolates at the start from the nodes that move.
 
-        The values at the other nodes follow from (z - A) h = 0 there.
-        """
-        many, row, A = len(self.speeds), self.start[parity], self.generator[parity]
-        if not np.any(row[many:]):
+class Scattering:
+    """z - A on the nodes that move; values at the others follow from (z - A) h = 0 there.
+
+    Parameters
+    ----------
+    grid : PlaneOrdinates
+    z : complex
+    parity : {ODD, EVEN}
+    """
+
+    def __init__(self, grid: PlaneOrdinates, z: complex, parity: int):
+        self._many, A = len(grid.speeds), grid.generator[parity]
+        self._matrix = (z * sp.eye_array(A.shape[0], format="csc") - A).tocsc()
+        self._row = grid.start[parity]
+        still = self._matrix[self._many :, self._many :]
+        self._still = spla.splu(still) if still.shape[0] else None
+
+    def applied(self, values: np.ndarray) -> np.ndarray:
+        """Apply it to functions on the nodes that move, the columns of an array."""
+        moving = self._matrix[:, : self._many] @ values
+        if self._still is None:
+            return moving
+        inside = self._still.solve(moving[self._many :])
+        return moving[: self._many] - self._matrix[: self._many, self._many :] @ inside
+
+    def start_row(self) -> np.ndarray:
+        """Row vector that interpolates at the start from the nodes that move."""
+        many, row = self._many, self._row
+        if self._still is None or not np.any(row[many:]):
             return row[:many]
-        still = (z * sp.eye_array(A.shape[0], format="csc") - A)[many:]
-        weights = spla.splu(still[:, many:].T.tocsc()).solve(row[many:] + 0 * z)
-        return row[:many] - weights @ still[:, :many]
+        weights = self._still.solve(row[many:].astype(self._matrix.dtype), trans="T")
+        return row[:many] - weights @ self._matrix[many:, :many]
 
 
 def boxed(scene: Scene) -> dict:
@@ -88,7 +104,9 @@ def boxed(scene: Scene) -> dict:
     }
 
 
-def plane_ordinates(scene: Scene, ends: dict, level: int, time: float) -> PlaneOrdinates:
+def plane_ordinates(
+    scene: Scene, ends: dict, level: tuning.PlaneLevel, time: float
+) -> PlaneOrdinates:
     """Discretise a scene with two state variables, finite n, odd drift and odd g.
 
     Parameters
@@ -96,8 +114,8 @@ def plane_ordinates(scene: Scene, ends: dict, level: int, time: float) -> PlaneO
     scene : Scene
     ends : dict
         Half widths of the box.
-    level : int
-        Of resolution, from 0.
+    level : PlaneLevel
+        Resolution.
     time : float
         Shortest time of interest, "1".
 
@@ -110,39 +128,43 @@ def plane_ordinates(scene: Scene, ends: dict, level: int, time: float) -> PlaneO
     g = solve.fold(evaluate(scene.numerical_observable(), axes))
     row, half = start_row(scene, axes), len(g)
     start = {parity: row[:half] + parity * row[half:][::-1] for parity in (ODD, EVEN)}
-    moving = _moving(solve, g, start[EVEN], time)
+    weights = _weights(solve, start[EVEN], time)
+    moving = _moving(weights * np.abs(g), level.dropped)
     order = np.append(moving, np.delete(np.arange(half), moving))
     generator = {parity: solve.matrix(parity)[order][:, order].tocsc() for parity in (ODD, EVEN)}
-    way = math.sqrt(np.abs(2 * solve.fold(solve.stationary())) @ g**2) / scene.damping
     return PlaneOrdinates(
         g[moving],
+        weights[moving],
         np.ones(half),
-        way,
-        0,
+        math.sqrt(weights @ g**2 / weights.sum()) / scene.damping,
         generator,
         {p: start[p][order] for p in (ODD, EVEN)},
     )
 
 
-def _moving(solve, g, start, time):
-    """Find the nodes that carry the mean of |g|, in the long run and soon after the start."""
-    matrix = sp.eye_array(len(g)) / time - solve.matrix(EVEN)
+def _weights(solve, start, time):
+    """Masses of the invariant measure and of the nodes visited soon after the start."""
+    matrix = sp.eye_array(len(start)) / time - solve.matrix(EVEN)
     visited = spla.splu(matrix.T.tocsc()).solve(start) / time
-    flow = np.abs(g) * (np.abs(2 * solve.fold(solve.stationary())) + np.abs(visited))
+    return np.abs(2 * solve.fold(solve.stationary())) + np.abs(visited)
+
+
+def _moving(flow, dropped):
+    """Find the nodes that carry the flow, but for a small part of it."""
     order = np.argsort(flow)
-    return np.sort(order[np.cumsum(flow[order]) > tuning.PLANE_ORDINATES.dropped * flow.sum()])
+    return np.sort(order[np.cumsum(flow[order]) > dropped * flow.sum()])
 
 
 def _axes(scene, ends, level, time):
-    settings, made = tuning.PLANE_ORDINATES.levels[level], {}
+    made = {}
     for symbol in variables(scene):
         end = ends[symbol]
-        edges = _positive_edges(scene, symbol, end, settings, time)
+        edges = _positive_edges(scene, symbol, end, level, time)
         edges = mirrored(distinct(edges[(edges > 1e-12 * end) & (edges <= end)], 1e-9 * end))
         if symbol == scene.noise.driven:
-            made[symbol] = continuous(edges, settings.driven)
+            made[symbol] = continuous(edges, level.driven)
         else:
-            made[symbol] = discontinuous(edges, settings.other)
+            made[symbol] = discontinuous(edges, level.other)
     return made
 
 
@@ -164,5 +186,7 @@ def _positive_edges(scene, symbol, end, level, time):
         largest, finest = (knot / part for part in settings.beside_knot)
         return np.append(edges, knot - graded(largest, finest, level.ratio))
     inner = knot if wall else end
+    if wall and not observed:  # nothing happens at x = 0 then
+        return np.append(edges, inner * np.array(settings.before_wall))
     finest = max(level.finest * inner, 0.0 if wall else knot)
-    return np.append(edges, graded(inner, finest, level.ratio))
+    return np.concatenate([edges, [settings.outer * inner], graded(inner, finest, level.ratio)])

@@ -51,12 +51,15 @@ class PlaneLevel(NamedTuple):
         Ratio of the widths of neighbouring elements, where they are graded.
     finest : float
         Width of the element next to g = 0, relative to the end of the axis.
+    dropped : float
+        Share of E |g| at nodes that are taken to stand still.
     """
 
     driven: int
     other: int
     ratio: float
     finest: float
+    dropped: float
 
 
 @dataclass(frozen=True)
@@ -65,24 +68,14 @@ class PlaneOrdinates:
 
     depth: float = 14.0  # derived: outside the box the density is exp(-14) = 8e-7 of its maximum
     start: float = 1.25  # chosen: the box contains so many times the start
-    # chosen: the first four for slabs, whose cost is the cube of the number of nodes; the others
-    # for time stepping, which takes finer ones
-    levels: tuple[PlaneLevel, ...] = (
-        PlaneLevel(4, 2, 4.0, 0.1),
-        PlaneLevel(5, 3, 4.0, 0.1),
-        PlaneLevel(6, 3, 4.0, 0.1),
-        PlaneLevel(7, 4, 3.0, 0.1),
-        PlaneLevel(6, 4, 3.0, 0.01),
-        PlaneLevel(8, 4, 3.0, 0.01),
-        PlaneLevel(8, 4, 2.0, 0.01),
-    )
     coarsest: float = 9.0  # chosen: the half axis over the finest element, if noise drives g, ...
     fast: float = 1.5  # chosen: ... which is at most so many sigma sqrt(t)
+    outer: float = 0.4  # chosen: an edge in the outermost element, over the end of the axis
+    before_wall: tuple[float, ...] = (0.5, 0.85)  # chosen: edges over the place of the wall
     in_wall: tuple[float, ...] = (0.125, 0.35)  # chosen: edges inside a wall, over its depth
     # chosen: position of the kink over the largest and over the finest element beside it, if g is
     # the penalty force
     beside_knot: tuple[float, float] = (2.0, 64.0)
-    dropped: float = 1e-5  # chosen: share of E |g| at nodes that are taken to stand still
 
 
 class GibbsLevel(NamedTuple):
@@ -97,36 +90,31 @@ class GibbsLevel(NamedTuple):
     inside, within : tuple of float
         Edges of elements relative to the distance of the wall from 0, and beyond the wall
         relative to the depth of the box there.
+    dropped : float
+        Share of E |g| at nodes that are taken to stand still.
     """
 
     hermite: int
     degree: int
     inside: tuple[float, ...]
     within: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class GibbsOrdinates:
-    """Grids of the state (y, x) with a Gibbs density."""
-
-    # chosen: as in `PlaneOrdinates`, the first four for slabs, the others for time stepping
-    levels: tuple[GibbsLevel, ...] = (
-        GibbsLevel(12, 5, (0.3, 1.0), (0.5, 1.0)),
-        GibbsLevel(16, 6, (0.3, 1.0), (0.5, 1.0)),
-        GibbsLevel(18, 6, (0.2, 1.0), (0.25, 0.6, 1.0)),
-        GibbsLevel(22, 6, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
-        GibbsLevel(36, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
-        GibbsLevel(60, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
-        GibbsLevel(80, 6, (0.12, 0.4, 1.0), (0.5, 1.0)),
-    )
+    dropped: float
 
 
 @dataclass(frozen=True)
 class AddingDoubling:
     """Slabs that are put together."""
 
-    opaque: float = 1e-10  # chosen: transmission of a slab that is as good as a half space
-    most: int = 100  # chosen: doublings until it is opaque; if 2^100 slabs are not, no number is
+    fewest: int = 6  # chosen: doublings, at least
+    opaque: float = 1e-4  # chosen: transmission of a slab that is as good as a half space
+    resolved: int = 4  # chosen: how often a slab is halved everywhere, not only at its faces
+
+
+@dataclass(frozen=True)
+class ReducedOrdinates:
+    """Modes of few ordinates."""
+
+    agree: float = 1e-4  # chosen: relative difference up to which two eigenvalues are the same
 
 
 @dataclass(frozen=True)
@@ -162,7 +150,7 @@ class TailEquation:
 LINE_ORDINATES = LineOrdinates()
 CASE_MODES = CaseModes()
 PLANE_ORDINATES = PlaneOrdinates()
-GIBBS_ORDINATES = GibbsOrdinates()
 ADDING_DOUBLING = AddingDoubling()
+REDUCED_ORDINATES = ReducedOrdinates()
 TAIL_DESCENT = TailDescent()
 TAIL_EQUATION = TailEquation()

@@ -1,9 +1,11 @@
-"""Slabs made by doubling: what they reflect and transmit."""
+"""Slabs made by doubling: what they reflect and transmit, and the solutions inside of them."""
+
+from itertools import islice
 
 import numpy as np
 import pytest
 
-from nonsmooth.kinetic.adding_doubling import slab
+from nonsmooth.kinetic.adding_doubling import fields, slabs
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from support import coarse_ordinates
 
@@ -16,7 +18,16 @@ def test_is_passive_and_conserves(scene):
     """Constants are lost at the rate z only: 1 - (R + S) 1 is of the order z."""
     grid = coarse_ordinates(scene)
     for z in (1e-6, 1e-8):
-        made = slab(grid, z, 1.0, 8)
+        *_, made = islice(slabs(grid, z, 1 / 256), 9)
         ones = grid.ones[: len(grid.speeds)]
         lost = ones - (made.reflection + made.transmission) @ ones
         assert np.max(np.abs(lost)) < 1e3 * z + 1e-9
+
+
+@pytest.mark.slow
+def test_fields_in_a_thick_slab_are_those_of_a_half_space():
+    """What its face sends back, but for what is taken to be opaque: 1e-4 of the values."""
+    grid = coarse_ordinates(COLORED_FRICTION)
+    thin = 0.02 * grid.way
+    thick, half = (fields(grid, 1.0, size, thin) for size in (2**13 * thin, np.inf))
+    assert thick[:, 1] == pytest.approx(half[:, 1], abs=2e-4)

@@ -6,16 +6,17 @@ for two. It is solved on finer and finer levels until two of them agree.
 
 import numpy as np
 
-from nonsmooth.crossing.first_passage import plane, time_stepping, tuning
+from nonsmooth.crossing.first_passage import plane, tuning
+from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver
 from nonsmooth.crossing.first_passage.line import LineProblem, LineProblemFromAfar
-from nonsmooth.crossing.first_passage.plane import PlaneProblem
+from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted
 from nonsmooth.crossing.first_passage.problem import (
     DirectProblem,
     FirstPassageProblem,
     LaplaceProblem,
 )
-from nonsmooth.crossing.first_passage.time_stepping import PlaneProblemInTime, UnstableError
+from nonsmooth.crossing.first_passage.time_stepping import UnstableError, stepped
 from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.kinetic import tail_descent
 from nonsmooth.line.potential import depth
@@ -87,14 +88,36 @@ def _on_line(scene, lower, upper, times, tol):
 
 
 def _in_plane(scene, lower, upper, times, tol):
-    """Solve for two state variables: by steps in time if there are few, or else by contours."""
-    problem = PlaneProblem(scene, lower, upper)
-    if time_stepping.applies(problem, times):
+    """Solve for two state variables: early times by steps, later ones by contours."""
+
+    def part_by_part(here, parts, solver):
+        problem = PlaneProblem(scene, lower, upper, times[here])
+        return _part_by_part(problem, times[here], parts, solver, tol)
+
+    early, found = times * scene.damping <= tuning.TIME_STEPPING.until, []
+    if early.any():
         try:
-            return refined(PlaneProblemInTime(problem), times, tol)
+            found.append(part_by_part(early, tuning.STEPPED_PARTS, stepped))
         except UnstableError:  # slabs are stable on every grid
-            pass
-    return refined(problem, times, tol)
+            early = times < 0
+    if not early.all():
+        found.append(part_by_part(~early, tuning.PLANE_PARTS, inverted))
+    solution, error = (np.hstack(parts) for parts in zip(*found, strict=True))
+    return _answer(PlaneProblem(scene, lower, upper, times), times, solution, error, tol)
+
+
+def _part_by_part(problem, times, parts, solver, tol):
+    """Refine each part of the resolution by itself; return the solution and its error."""
+
+    def stated(found):
+        solution = np.clip(found.value, 0.0, 1.0)
+        change = found.change + np.abs(found.value - solution)
+        return solution, _with_floors(problem, times, solution, change)
+
+    found = refine_each_part(
+        parts, solver(problem, times), lambda found: np.all(stated(found)[1] <= tol), tol
+    )
+    return stated(found)
 
 
 def _from_afar(scene, lower, upper, times, tol):
@@ -154,21 +177,25 @@ def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict
         refinement.hopeless,
     )
     solution = np.clip(result.value[0], 0.0, 1.0)
+    return _answer(problem, times, solution, result.error, tol)
+
+
+def _answer(problem, times, solution, error, tol):
+    """Return what was found, or raise an error with it."""
     found = {
         "probability": solution[0],
-        "probability_error": result.error[0],
+        "probability_error": error[0],
         "survival": solution[1],
-        "survival_error": result.error[1],
+        "survival_error": error[1],
     }
-    if not result.met:
-        worst = int(np.argmax(result.error.max(axis=0)))
-        raise ToleranceError(
-            f"W = {solution[0, worst]:.7g} at t = {times[worst]:g} has an error of "
-            f"{result.error.max():.1e}, above tol = "
-            f"{tol:g}; {settings.advice}",
-            found,
-        )
-    return found
+    if np.all(error <= tol):
+        return found
+    worst = int(np.argmax(error.max(axis=0)))
+    raise ToleranceError(
+        f"W = {solution[0, worst]:.7g} at t = {times[worst]:g} has an error of {error.max():.1e}, "
+        f"above tol = {tol:g}; {problem.settings.advice}",
+        found,
+    )
 
 
 def _solver(problem: FirstPassageProblem, times: np.ndarray) -> Solver:
@@ -201,29 +228,15 @@ class _Refinement:
 
     def error(self, solutions):
         """Estimate the errors of the last solution from the difference to the one before."""
-        settings, refinement = self.problem.settings, tuning.REFINEMENT
+        refinement = tuning.REFINEMENT
         odd = self.problem.scene.is_odd()
-        safety, rounding = (
-            (refinement.safety_odd, refinement.rounding_odd)
-            if odd
-            else (refinement.safety, refinement.rounding)
-        )
+        safety = refinement.safety_odd if odd else refinement.safety
         (coarse, _), (found, solved) = solutions[-2:]
         solution = np.clip(found, 0.0, 1.0)
         # values are compared before they are clipped: two levels that failed may agree afterwards
         change = safety * np.abs(found - coarse) + np.abs(found - solution)
         self._change = np.where(solved, change, self._change)
-        error = _largest_nearby(
-            self._change, solution if settings.relative else 1 + 0 * self._change, self.times
-        )
-        error += settings.unseen_error * solution + refinement.underflow
-        error += rounding * self.problem.scene.damping * self.times * solution[0] * solution[1]
-        error[0] = np.where(
-            solution[0] == 0, np.maximum(settings.least_probability, error[0]), error[0]
-        )
-        # the two probabilities have the sum 1: the smaller error holds for both
-        least = error.min(axis=0)
-        return np.where(error > refinement.exact, least + refinement.complement, error)
+        return _with_floors(self.problem, self.times, solution, self._change)
 
     def met(self, solution, error):
         """Whether the error is as small as wanted at all times."""
@@ -239,6 +252,21 @@ class _Refinement:
         self._worst = error.max()
         self._wanted = np.any(error > self.tol, axis=0)
         return False
+
+
+def _with_floors(problem, times, solution, change):
+    """Errors from the changes between resolutions, and what no such change shows."""
+    settings, refinement = problem.settings, tuning.REFINEMENT
+    error = _largest_nearby(change, solution if settings.relative else 1 + 0 * change, times)
+    error += settings.unseen_error * solution + refinement.underflow
+    rounding = refinement.rounding_odd if problem.scene.is_odd() else refinement.rounding
+    error += rounding * problem.scene.damping * times * solution[0] * solution[1]
+    error[0] = np.where(
+        solution[0] == 0, np.maximum(settings.least_probability, error[0]), error[0]
+    )
+    # the two probabilities have the sum 1: the smaller error holds for both
+    least = error.min(axis=0)
+    return np.where(error > refinement.exact, least + refinement.complement, error)
 
 
 def _largest_nearby(errors, values, times):

@@ -1,4 +1,4 @@
-"""First passage of int_0^t g for two state variables, by adding and doubling of slabs."""
+"""First passage of int_0^t g for two state variables, by the Laplace transform on reduced grids."""
 
 import math
 from collections.abc import Callable
@@ -6,12 +6,16 @@ from collections.abc import Callable
 import numpy as np
 
 from nonsmooth.crossing.first_passage import tuning
-from nonsmooth.crossing.first_passage.problem import ContourSettings, LaplaceProblem
-from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.crossing.first_passage.inversion import contour_solver
+from nonsmooth.crossing.first_passage.problem import (
+    ContourSettings,
+    LaplaceProblem,
+)
 from nonsmooth.kinetic import ordinates_gibbs
-from nonsmooth.kinetic.adding_doubling import half_space, slab
+from nonsmooth.kinetic.adding_doubling import fields
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
+from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates, reduced
 from nonsmooth.scenes.scene import Scene
 
 
@@ -28,107 +32,142 @@ def applies(scene: Scene) -> bool:
 class PlaneProblem(LaplaceProblem):
     """A scene with two state variables to which this module `applies`, and an interval.
 
-    The resolution of a level is that of the grid and of the slabs. One grid serves all times.
+    A resolution is a triple: of the grid in the driven variable, in the other one, and of the basis
+    in which the grid is reduced. One grid serves all times.
 
     Parameters
     ----------
     scene : Scene
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite.
+    times : numpy.ndarray, shape (k,)
+        Increasing, positive.
     """
 
-    def __init__(self, scene: Scene, lower: float, upper: float):
+    def __init__(self, scene: Scene, lower: float, upper: float, times: np.ndarray):
         self.scene, self.lower, self.upper = scene, lower, upper
-        self._ends = boxed(scene)
-        self._grids: dict[int, PlaneOrdinates] = {}
+        self._times, self._ends = times, boxed(scene)
+        self._grids: dict[tuple, PlaneOrdinates] = {}
+        self._known: dict[tuple, np.ndarray] = {}
+        self._reduced: dict[tuple, ReducedOrdinates] = {}
 
     @property
     def settings(self) -> ContourSettings:
-        """How accurate the problem is, and its levels."""
+        """How accurate the problem is."""
         return tuning.PLANE
 
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
         """Return F on the coarsest grid; see `LaplaceProblem`."""
-        return self._on_grid(0, 1 / self.scene.damping)
+        return self.transform((0, 0, 0), self._times, 0.0)
 
     def transform(
-        self, resolution: int, times: np.ndarray, rarity: float
+        self, resolution: tuple, times: np.ndarray, rarity: float
     ) -> Callable[[complex], complex]:
         """Return F on a grid of some resolution; see `LaplaceProblem`."""
-        return self._on_grid(resolution, times[0])
+        ordinates = self.ordinates(*resolution)
+        return lambda z: ordinates.first_passage(z, self.lower, self.upper)
 
-    def discretised(self, level: int, time: float) -> PlaneOrdinates:
+    def mean_duration(self) -> float:
+        """Mean of the lesser of the first passage time and of an exponential one, for first steps.
+
+        The latter has the mean of a relaxation time.
+        """
+        z = self.scene.damping
+        mean = (1 - self.coarse_transform(z, 0.0)(z)).real / z
+        return max(mean, tuning.SLABS.shortest / z)
+
+    def largest_probability(self, time: float) -> float:
+        """Chernoff's bound of the probability, from a few small exponents."""
+        settings, transform = tuning.SLABS, self.coarse_transform(0.0, 0.0)
+        return min(
+            math.exp(s) * (abs(transform(s / time)) + settings.coarse) for s in settings.exponents
+        )
+
+    def grid(
+        self, driven: int, other: int, levels: tuning.PlaneGrids = tuning.PLANE_GRIDS
+    ) -> PlaneOrdinates:
         """Make a grid.
 
         Parameters
         ----------
-        level : int
-            Of resolution, from 0.
-        time : float
-            Shortest time of interest.
+        driven, other : int
+            Resolution of the variable that noise drives, and of the other.
+        levels : PlaneGrids
+            What a resolution means.
         """
-        if ordinates_gibbs.applies(self.scene):
-            return gibbs_ordinates(self.scene, self._ends, level)
-        return plane_ordinates(self.scene, self._ends, level, time)
+        key = driven, other, levels
+        if key not in self._grids:
+            if ordinates_gibbs.applies(self.scene):
+                self._grids[key] = gibbs_ordinates(
+                    self.scene, self._ends, levels.gibbs(driven, other)
+                )
+            else:
+                level = levels.plane(driven, other)
+                time = min(self._times[0], 1 / self.scene.damping)
+                self._grids[key] = plane_ordinates(self.scene, self._ends, level, time)
+        return self._grids[key]
 
-    def mean_duration(self, time: float) -> float:
-        """Mean of the lesser of the first passage time and of an exponential time of mean `time`.
+    def ordinates(self, driven: int, other: int, basis: int) -> ReducedOrdinates:
+        """Reduce a grid.
 
-        It is at least a small part of `time`.
+        Parameters
+        ----------
+        driven, other : int
+            As for `grid`.
+        basis : int
+            Resolution of the basis.
         """
-        z = 1 / time
-        mean = (1 - self.coarse_transform(z, 0.0)(z)).real / z
-        return max(mean, tuning.SLABS.least * time)
+        key = driven, other, basis
+        if key not in self._reduced:
+            found = list(self._fields(*key).values())
+            accuracy = tuning.BASES[basis].accuracy
+            self._reduced[key] = reduced(self.grid(driven, other), np.hstack(found), accuracy)
+        return self._reduced[key]
 
-    def _on_grid(self, resolution, time):
-        # the window of the shortest times is asked for first; its grid serves the others, too
-        if resolution not in self._grids:
-            self._grids[resolution] = self.discretised(resolution, time)
-        grid = self._grids[resolution]
-        return lambda z: first_passage(grid, z, self.lower, self.upper, resolution)
+    def _fields(self, driven, other, basis):
+        """Solutions in the slab for the z of a basis."""
+        settings = tuning.BASES[basis]
+        return {
+            z: self._field(driven, other, z, settings.thin) for z in self._shifts(settings.spacing)
+        }
+
+    def _field(self, driven, other, z, thin):
+        """Solutions in the slab for a real z."""
+        key = driven, other, z, thin
+        if key not in self._known:
+            grid = self.grid(driven, other)
+            self._known[key] = fields(grid, z, self.upper - self.lower, thin * grid.way)
+        return self._known[key]
+
+    def _shifts(self, spacing):
+        """Real z, of the sizes of the inverse times, on a lattice that all requests share."""
+        settings, scale = tuning.SLABS, spacing * tuning.SLABS.lattice
+        first = math.floor(math.log(settings.least / self._times[-1] / self.scene.damping) / scale)
+        last = math.ceil(math.log(settings.largest / self._times[0] / self.scene.damping) / scale)
+        return self.scene.damping * np.exp(scale * np.arange(first, last + 1))
 
 
-def first_passage(
-    grid: PlaneOrdinates, z: complex, lower: float, upper: float, resolution: int
-) -> complex:
-    """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
-
-    The start divides the interval into two slabs. Their reflection and transmission give the values
-    at the start where the flow enters either of them.
+def inverted(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.ndarray]:
+    """Prepare the inversion of the transform.
 
     Parameters
     ----------
-    grid : PlaneOrdinates
-    z : complex
-    lower, upper : float
-        Of opposite signs; one may be infinite.
-    resolution : int
-        Of the slabs, from 0.
+    problem : PlaneProblem
+    times : numpy.ndarray, shape (k,)
+        Increasing, positive.
 
     Returns
     -------
-    complex
+    callable
+        Takes the resolutions of the grid, driven and other variable, of the basis and of the
+        contour; returns probability and survival probability, shape (2, k).
     """
-    settings = tuning.SLABS
-    thin = settings.thin * grid.way / 2**resolution
+    solve, count = contour_solver(problem, times), len(times)
+    nothing, every = np.array([np.zeros(count), np.ones(count)]), np.full(count, True)
 
-    def made(thickness):
-        doublings = max(settings.fewest + resolution, math.ceil(math.log2(thickness / thin)))
-        return slab(grid, z, thickness, doublings)
+    def solved(resolution):
+        *grid, contour = resolution
+        level = tuning.PLANE.levels[contour]._replace(resolution=tuple(grid))
+        return solve(level, nothing, every)[0]
 
-    one, ones = np.eye(len(grid.speeds)), grid.ones[: len(grid.speeds)]
-    if lower == -upper:
-        half = made(upper)
-        even = np.linalg.solve(one - half.reflection, half.transmission @ ones)
-        return (grid.start_row(z, EVEN) @ even).item()
-    below, above = (made(abs(b)) if np.isfinite(b) else None for b in (lower, upper))
-    from_below, from_above = (s.transmission @ ones if s else 0 * ones for s in (below, above))
-    reflects_below = below.reflection if below else half_space(above or made(upper))
-    reflects_above = above.reflection if above else half_space(below or made(-lower))
-    # values at the start where the flow enters the slab above, and that below
-    up = np.linalg.solve(
-        one - reflects_above @ reflects_below, from_above + reflects_above @ from_below
-    )
-    down = from_below + reflects_below @ up
-    odd = np.sign(grid.speeds) * (up - down) / 2
-    return (grid.start_row(z, EVEN) @ (up + down) / 2 + grid.start_row(z, ODD) @ odd).item()
+    return solved

@@ -58,7 +58,7 @@ class ContourLevel(NamedTuple):
 
     Attributes
     ----------
-    resolution : int
+    resolution : object
         Of the transform, handed on to `LaplaceProblem.transform`.
     nodes : int
         Of a hyperbolic contour that serves a single time.
@@ -66,9 +66,26 @@ class ContourLevel(NamedTuple):
         Of the nodes of a contour through a saddle point, relative to what ten digits need.
     """
 
-    resolution: int
+    resolution: Any
     nodes: int
     spacing: float
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a resolution.
+
+    Attributes
+    ----------
+    first, last : int
+        Resolution to begin with, and the finest.
+    step : {1, -1}
+        Whether it is compared with the next finer resolution, or with the next coarser one.
+    """
+
+    first: int
+    last: int
+    step: int
 
 
 @dataclass(frozen=True)
@@ -145,13 +162,13 @@ class LaplaceProblem(FirstPassageProblem):
 
     @abstractmethod
     def transform(
-        self, resolution: int, times: np.ndarray, rarity: float
+        self, resolution: Any, times: np.ndarray, rarity: float
     ) -> Callable[[complex], complex]:
         """Return F on a grid that serves given times.
 
         Parameters
         ----------
-        resolution : int
+        resolution : object
             That of a level.
         times : numpy.ndarray, shape (k,)
             Times of a window, increasing; z will be of the size of their inverses.

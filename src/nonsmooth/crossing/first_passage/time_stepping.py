@@ -1,11 +1,11 @@
-"""First passage of int_0^t g for two state variables, by steps in time.
+"""First passage of int_0^t g for two state variables at early times, by steps in time.
 
 The probability q(t, x, Z) that x + int_0^t g stays inside of the interval until t, if the state
 begins at Z, solves q_t = A q + g q_x with q = 1 at t = 0 and q = 0 where the flow leaves. Strang's
 splitting alternates exp(A t), a dense matrix on the grid of the state, and the transport by g, a
 small matrix for each value of g on discontinuous elements in x, which are graded towards the
-thresholds. If crossings take a few relaxation times, this is much faster than the Laplace
-transform, which grows off the axis then; if they take many, there are too many steps.
+thresholds. Within a few relaxation times after the start this is better than the Laplace transform,
+which grows off the axis then and makes much of small errors; later it would take too many steps.
 
 For odd g and drift, q of an interval at (x, Z) is q of its mirror image at (-x, -Z). So even and
 odd functions of Z are known from half of the grid of the state, if an interval that is not its own
@@ -13,6 +13,7 @@ mirror image is solved together with it.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import scipy.linalg
@@ -20,8 +21,6 @@ from scipy.interpolate import CubicSpline
 
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
-from nonsmooth.crossing.first_passage.problem import DirectProblem, Settings
-from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import discontinuous
 from nonsmooth.grids.grading import graded
 from nonsmooth.grids.solver import EVEN, ODD
@@ -32,78 +31,46 @@ class UnstableError(Exception):
     """A grid whose generator is far from dissipative, so that the solution grows."""
 
 
-def applies(problem: PlaneProblem, times: np.ndarray) -> bool:
-    """Whether there are few enough steps: within some hundred relaxation times all is over.
-
-    Then practically all paths have crossed, or the last time is reached.
+def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.ndarray]:
+    """Prepare the steps.
 
     Parameters
     ----------
     problem : PlaneProblem
-    times : numpy.ndarray
+    times : numpy.ndarray, shape (k,)
+        Increasing, positive.
 
     Returns
     -------
-    bool
+    callable
+        Takes the resolutions of the grid, driven and other variable, of x and of time; returns
+        probability and survival probability, shape (2, k). Raises `UnstableError` if the solution
+        grows.
     """
-    settings = tuning.TIME_STEPPING
-    end = min(times[-1], settings.tail * problem.mean_duration(times[-1]))
-    return end * problem.scene.damping <= settings.short
+    settings, damping, last = tuning.TIME_STEPPING, problem.scene.damping, times[-1]
+    duration = problem.mean_duration()
+    if problem.largest_probability(last) < tuning.PLANE.least_probability:
+        nothing = np.array([0.0 * times, 1.0 + 0.0 * times])
+        return lambda resolution: nothing
 
-
-class PlaneProblemInTime(DirectProblem):
-    """A `PlaneProblem`, solved by steps in time.
-
-    Parameters
-    ----------
-    plane : PlaneProblem
-    """
-
-    def __init__(self, plane: PlaneProblem):
-        self.scene, self.lower, self.upper = plane.scene, plane.lower, plane.upper
-        self._plane = plane
-
-    @property
-    def settings(self) -> Settings:
-        """How accurate the problem is, and its levels."""
-        return tuning.PLANE_IN_TIME
-
-    def solve(self, times: np.ndarray, level: tuning.StepLevel) -> np.ndarray:
-        """Probability and survival probability on one level.
-
-        Parameters
-        ----------
-        times : numpy.ndarray, shape (k,)
-        level : StepLevel
-
-        Returns
-        -------
-        numpy.ndarray, shape (2, k)
-
-        Raises
-        ------
-        ToleranceError
-            If it takes too many steps.
-        UnstableError
-            If the solution grows.
-        """
-        settings, damping, last = tuning.TIME_STEPPING, self.scene.damping, times[-1]
-        duration = self._plane.mean_duration(last)
-        grid = self._plane.discretised(level.resolution, min(duration, 1 / damping))
+    def solve(resolution):
+        driven, other, fine, short = resolution
+        grid, step = problem.grid(driven, other, tuning.STEPPED_GRIDS), settings.steps[short]
         spread = grid.way * damping * min(last, math.sqrt(settings.slow * last / damping))
+        degree, finest = settings.elements[fine]
         interval = _Interval(
-            self.lower,
-            self.upper,
-            level.degree,
-            level.finest * min(grid.way, -self.lower, self.upper),
-            settings.reached / math.sqrt(level.step) * spread,
+            problem.lower,
+            problem.upper,
+            degree,
+            finest * min(grid.way, -problem.lower, problem.upper),
+            settings.reached / math.sqrt(step) * spread,
         )
-        first = level.step * settings.first * min(duration, settings.early / damping)
-        at, values = _survival(grid, interval, first, level.step * settings.longest / damping, last)
-        found = np.interp(times, [at[-1]], values[-1:])
-        inside = times <= at[-1]
-        found[inside] = CubicSpline(at, values)(times[inside])
-        return np.clip([1 - found, found], 0.0, 1.0)
+        first = step * settings.first * min(duration, settings.early / damping)
+        at, values = _survival(grid, interval, first, step * settings.longest / damping, last)
+        found = CubicSpline(at, values)(times)
+        return np.array([1 - found, found])
+
+    return solve
 
 
 class _Interval:
@@ -205,13 +172,13 @@ class _SplitStep:
 
 
 def _survival(grid, interval, first, longest, last):
-    """Survival probability from the start at times from 0 to `last`, or until it is 0."""
+    """Survival probability from the start at times from 0 to `last`."""
     settings = tuning.TIME_STEPPING
     even = np.outer(grid.ones, np.ones(len(interval.row)))
     odd = np.zeros((grid.generator[ODD].shape[0], len(interval.row)))
     step = _SplitStep(grid, interval, first)
     times, values = [0.0], [1.0]
-    while times[-1] < last and values[-1] > settings.gone:
+    while times[-1] < last:
         if times[-1] >= settings.per_length * step.step and 2 * step.step <= longest:
             step.doubled()
         even, odd = step.apply(even, odd)
@@ -221,9 +188,4 @@ def _survival(grid, interval, first, longest, last):
         )
         if not -settings.unstable < values[-1] < 1 + settings.unstable:
             raise UnstableError(f"a survival probability of {values[-1]:g}")
-        if len(times) > settings.most:
-            raise ToleranceError(
-                f"survival is {values[-1]:.1g} still after {times[-1]:.3g}; "
-                "use method='monte_carlo'"
-            )
     return np.array(times), np.array(values)

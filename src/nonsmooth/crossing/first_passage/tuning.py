@@ -1,8 +1,10 @@
 """Numbers that were chosen for first-passage problems, a record for each method."""
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
-from nonsmooth.crossing.first_passage.problem import ContourLevel, ContourSettings, Settings
+from nonsmooth.crossing.first_passage.problem import ContourLevel, ContourSettings, Part
+from nonsmooth.kinetic.tuning import GibbsLevel, PlaneLevel
 
 
 @dataclass(frozen=True)
@@ -122,55 +124,103 @@ class FarStart:
 
 
 @dataclass(frozen=True)
-class Slabs:
-    """Slabs of two state variables."""
+class EachPart:
+    """Refinement of one part of a resolution at a time."""
 
-    fewest: int = 7  # chosen: doublings at resolution 0
-    thin: float = 0.1  # chosen: thinnest slab at resolution 0, over the way of a relaxation time
-    least: float = 1e-6  # chosen: least mean duration, over the time; keeps it above rounding
+    kept: float = 0.1  # chosen: a change counts at least so much of the one before
+    # chosen: a change to a coarser resolution counts so much; that to a finer one is smaller
+    coarser: float = 0.5
+    share: float = 0.2  # chosen: share of the tolerance from which a part is refined
 
 
 @dataclass(frozen=True)
-class StepLevel:
-    """A level of time stepping.
+class Slabs:
+    """Slabs of two state variables, at real z, from which the basis is taken."""
+
+    least: float = 0.3  # chosen: least z times the last time, ...
+    largest: float = 10.0  # chosen: ... and largest z times the first time
+    shortest: float = 1e-6  # chosen: least mean duration in relaxation times, above rounding
+    exponents: tuple[float, ...] = (0.5, 1.0, 2.0)  # chosen: z t at which W is bounded ...
+    coarse: float = 1e-6  # chosen: ... with F on a coarse grid, whose error is far below this
+    lattice: float = 0.575646  # derived: a quarter of a decade, log(10) / 4
+
+
+class Basis(NamedTuple):
+    """How a grid is reduced.
 
     Attributes
     ----------
-    resolution : int
-        Of the grid of the state.
-    degree : int
-        Polynomial degree in x.
-    finest : float
-        Smallest element in x, over the lesser of the distance to the threshold and of the way
-        that int g goes in a relaxation time.
-    step : float
-        Length of the steps, relative to that of `TimeStepping`.
+    spacing : int
+        Of the z at which solutions are found, in quarters of a decade.
+    accuracy : float
+        Relative size of what is left out.
+    thin : float
+        Thickness of the first slab, relative to the way that int g goes in a relaxation time.
     """
 
-    resolution: int
-    degree: int
-    finest: float
-    step: float
+    spacing: int
+    accuracy: float
+    thin: float
+
+
+@dataclass(frozen=True)
+class PlaneGrids:
+    """Grids of two state variables by their resolution."""
+
+    driven: tuple[int, ...] = (5, 6, 7, 9, 11, 13)  # chosen: polynomial degrees
+    other: tuple[tuple[int, float, float], ...] = (
+        (4, 8.0, 0.03),
+        (5, 8.0, 0.03),
+        (6, 8.0, 0.02),
+        (7, 6.0, 0.02),
+        (8, 6.0, 0.01),
+        (10, 6.0, 0.01),
+    )
+    hermite: tuple[int, ...] = (12, 16, 20, 26, 34, 44)
+    elements: tuple[tuple[int, tuple[float, ...], tuple[float, ...]], ...] = (
+        (5, (0.3, 1.0), (0.5, 1.0)),
+        (6, (0.2, 1.0), (0.4, 1.0)),
+        (7, (0.15, 0.5, 1.0), (0.3, 1.0)),
+        (8, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
+        (10, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
+        (12, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
+    )
+    dropped: float = 1e-6  # chosen: share of E |g| at nodes that are taken to stand still
+
+    def plane(self, driven: int, other: int) -> PlaneLevel:
+        """Level of a tensor grid."""
+        return PlaneLevel(self.driven[driven], *self.other[other], self.dropped)
+
+    def gibbs(self, driven: int, other: int) -> GibbsLevel:
+        """Level of a grid in Hermite polynomials of the driven variable."""
+        return GibbsLevel(self.hermite[driven], *self.elements[other], self.dropped)
 
 
 @dataclass(frozen=True)
 class TimeStepping:
     """Steps in time of two state variables."""
 
+    until: float = 6.0  # chosen: last time, in relaxation times; later the transform is tame
     ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x
-    longest: float = 0.1  # chosen: longest step, in relaxation times
-    first: float = 5e-3  # chosen: first step over the mean duration, ...
+    # chosen: polynomial degree in x, and the smallest element over the lesser of the distance to
+    # the threshold and of the way that int g goes in a relaxation time
+    elements: tuple[tuple[int, float], ...] = (
+        (3, 2e-2),
+        (4, 1e-2),
+        (5, 5e-3),
+        (6, 2e-3),
+        (7, 1e-3),
+    )
+    steps: tuple[float, ...] = (1.0, 0.5, 0.25, 0.125, 0.06)  # chosen: lengths, relative to ...
+    longest: float = 0.05  # chosen: ... the longest step, in relaxation times, and to ...
+    first: float = 5e-3  # chosen: ... the first step over the mean duration, ...
     early: float = 4.0  # chosen: ... or over so many relaxation times if these are shorter
     per_length: float = 100.0  # chosen: the step is doubled once time is so many times the step
     reached: float = 6.0  # chosen: end of the axis where there is no threshold, in spreads of ...
     slow: float = 8.0  # chosen: ... int g if its correlation time is half of so many relaxations
-    gone: float = 1e-6  # chosen: survival probability that is taken as 0, below the error
-    short: float = 500.0  # chosen: longest duration, in relaxation times; beyond, slabs are faster
-    tail: float = 15.0  # chosen: number of mean durations after which practically all have crossed
-    most: int = 20_000  # chosen: steps, after which this gives up with an error
     # chosen: values so far outside of [0, 1] mean that the solution grows; elements overshoot by
     # less where a front passes
-    unstable: float = 1e-3
+    unstable: float = 1e-2
 
 
 CONTOURS = Contours()
@@ -180,7 +230,39 @@ REFINEMENT = Refinement()
 LINE_GRIDS = LineGrids()
 FAR_START = FarStart()
 SLABS = Slabs()
+EACH_PART = EachPart()
+PLANE_GRIDS = PlaneGrids()
+BASES = (
+    Basis(8, 1e-6, 0.02),
+    Basis(4, 1e-7, 0.02),
+    Basis(2, 1e-8, 0.005),
+    Basis(1, 1e-9, 0.005),
+)
 TIME_STEPPING = TimeStepping()
+STEPPED_GRIDS = PlaneGrids(
+    driven=(5, 6, 8, 9, 10, 12),
+    other=(
+        (3, 3.0, 0.02),
+        (4, 3.0, 0.02),
+        (5, 3.0, 0.01),
+        (6, 3.0, 0.01),
+        (7, 3.0, 0.01),
+        (8, 3.0, 0.01),
+    ),
+    hermite=(24, 36, 54, 80, 110, 140),
+    elements=(
+        (5, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (6, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (7, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (8, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (9, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (10, (0.12, 0.4, 1.0), (0.5, 1.0)),
+    ),
+)
+# driven and other variable of the grid, x, time
+STEPPED_PARTS = (Part(1, 4, 1), Part(1, 4, 1), Part(1, 3, 1), Part(0, 3, 1))
+# driven and other variable of the grid, basis, contour
+PLANE_PARTS = (Part(0, 4, 1), Part(0, 4, 1), Part(1, 3, -1), Part(1, 4, -1))
 
 # The numbers of these records are described at `Settings` and `ContourSettings`. All without a
 # comment are chosen by trial; benchmarks/crossing_honesty.py checks the errors that result.
@@ -223,28 +305,15 @@ PLANE = ContourSettings(
         ContourLevel(1, 8, 1.05),
         ContourLevel(2, 9, 0.95),
         ContourLevel(3, 10, 0.9),
+        ContourLevel(4, 12, 0.8),
     ),
     relative=False,
     least_probability=2e-5,
-    unseen_error=1e-5,  # derived: flow of the nodes that are taken to stand still
+    unseen_error=2e-6,  # derived: flow of the nodes that are taken to stand still, and
+    #                     what is outside of the box
     advice="loosen tol, or use method='monte_carlo'",
     least_transform=1e-13,
     window=4.0,
     rise_truncation=1e-7,
     steady_truncation=1e-6,
-)
-PLANE_IN_TIME = Settings(
-    default_tolerance=PLANE.default_tolerance,
-    coarse_tolerance=1e-3,
-    levels=(
-        StepLevel(1, 3, 2e-2, 1.4),
-        StepLevel(4, 4, 1e-2, 1.0),
-        StepLevel(5, 4, 5e-3, 0.7),
-        StepLevel(6, 4, 2.5e-3, 0.5),
-    ),
-    relative=False,
-    least_probability=PLANE.least_probability,
-    # chosen: that of `PLANE`, and as much again because levels refine mostly one of the variables
-    unseen_error=2e-5,
-    advice=PLANE.advice,
 )

@@ -1,0 +1,60 @@
+"""Refinement of one part at a time, on solutions whose errors are known."""
+
+import numpy as np
+import pytest
+
+from nonsmooth.crossing.first_passage.each_part import refine_each_part
+from nonsmooth.crossing.first_passage.problem import Part
+
+PARTS = (Part(0, 12, 1), Part(0, 12, 1), Part(1, 12, -1))
+
+
+def solution(errors):
+    """Zero, but for the errors of the three parts at their resolutions."""
+    return lambda at: np.array(
+        [[sum(error(n) for error, n in zip(errors, at, strict=True))], [0.0]]
+    )
+
+
+class TestRefineEachPart:
+    """The error is the sum of what each part changes."""
+
+    @pytest.mark.parametrize("tol", [1e-2, 1e-4, 1e-6])
+    def test_holds_if_errors_halve(self, tol):
+        """A part changes by half of its error then, and what is left after adding it is as much."""
+        errors = [lambda n: 0.5**n, lambda n: -(3.0**-n), lambda n: 0.2**n]
+        found = refine_each_part(
+            PARTS, solution(errors), lambda found: np.all(found.change <= tol), tol
+        )
+        assert abs(found.value[0, 0]) <= found.change[0, 0]
+
+    def test_sees_the_part_that_others_leave_coarse(self):
+        """Two parts that are exact do not hide the third, whose error is refined alone."""
+        asked = []
+
+        def solve(at):
+            asked.append(at)
+            return solution([lambda n: 0.1**n, lambda n: 0.0, lambda n: 0.0])(at)
+
+        found = refine_each_part(PARTS, solve, lambda found: found.change.max() <= 1e-3, 1e-3)
+        assert found.change.max() <= 1e-3
+        assert {at[1] for at in asked} == {0, 1}  # never refined, only looked at
+        assert len(asked) == len(set(asked))
+
+    def test_a_change_counts_a_tenth_of_the_one_before(self):
+        """An error that changes its sign and seems to vanish is not taken to be zero."""
+        values = [0.0, 1e-2, 1e-2, 1e-2]
+        found = refine_each_part(
+            (Part(0, 2, 1),),
+            lambda at: np.array([[values[at[0]]], [0.0]]),
+            lambda found: found.change.max() <= 1e-4,
+            1e-4,
+        )
+        assert found.change.max() == pytest.approx(1e-4)
+
+    def test_ends_at_the_finest(self):
+        """What is not met on the finest resolution comes back with its error."""
+        found = refine_each_part(
+            (Part(0, 2, 1),), lambda at: np.array([[(-1.0) ** at[0]], [0.0]]), lambda f: False, 0.1
+        )
+        assert found.change.max() == 2.0
