@@ -18,17 +18,18 @@ class TwoVariables:
     """The Milne problem of two variables, on tensor grids."""
 
     accuracy: float = 1e-3  # absolute, unless asked; chosen: what takes up to two minutes
-    # the box ends where the density is exp(-16) of its maximum; chosen: only 1e-7 is left outside
-    depth: float = 16.0
+    # a box of depth d has a density of the order exp(-d) outside; kappa is found in a box of the
+    # depth log(1/tol) plus this, and deeper ones are harder to resolve; fitted: the effect of
+    # the box is a hundredth of the tolerance
+    spare: float = 5.0
+    depth: float = 16.0  # chosen: of the box of the Poisson solution; only 1e-7 is left outside
+    coarsest: int = 2  # chosen: levels from which the combination is tried to start
+    # chosen: work for one combination, in units of the largest grid; bounds the time
+    work: float = 3.0
     zero: float = 1e-13  # |g| up to this counts as 0, relative; derived: above rounding of g
-    largest: int = 3000  # nodes with g != 0; chosen: a minute of dense linear algebra
-    # correlation of g and its Poisson solution below which gamma^2 counts as 0; chosen: above the
-    # discretisation error of a gamma^2 that is 0
-    standstill: float = 1e-3
+    largest: int = 3000  # nodes with g != 0; chosen: half a minute of dense linear algebra
     gamma2: float = 1e-5  # relative error wanted of gamma^2; chosen: it costs less than the rest
-    # the last change of a variable is at most the tolerance over this; derived: twice the changes
-    # of both variables are half the tolerance; the other half is for what they change together
-    safety: float = 8.0
+    rounding: float = 1e-10  # chosen: relative, of the Poisson solution by sparse factors
     # smallest scale of a node over the largest; chosen: discrete densities are rounding below
     smallest_scale: float = 1e-10
 

@@ -13,10 +13,12 @@ import scipy.linalg
 from nonsmooth.boundary_layer import tuning
 from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.errors import SceneError, ToleranceError, quoted
+from nonsmooth.grids import uniform_refinement
+from nonsmooth.grids.combination_technique import combined
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import direct_solver, fitted
-from nonsmooth.refine import Refined, until_agreement
+from nonsmooth.grids.tuning import COMBINATION_TECHNIQUE
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics import gamma2_on_grids
 
@@ -41,92 +43,126 @@ def layer_constants(
     Returns
     -------
     constants, errors : LayerConstants
-        Each variable is refined alone, and the changes are added up. The error is twice the last
-        change of each, and what the first refinements change together beyond that sum.
+        The error of kappa is what grids beyond those combined may add (`Combination.error`), and
+        twice what a larger box changes.
 
     Raises
     ------
     SceneError
         If gamma^2 is 0: int g does not behave like a Brownian motion.
     ToleranceError
-        If `tol` is not met; the message has the best value and its error.
+        If `tol` is not met; the best constants and errors are its `result`.
     """
     tol = tuning.TWO_VARIABLES.accuracy if tol is None else tol
-    grid, best = fitted(scene, tuning.TWO_VARIABLES.depth, 0), math.nan
-    # if refining both variables changes too much beyond the sum of the separate changes, start
-    # again from a finer grid; `_solved` raises an error when the grid is too large
-    while True:
-        values, errors = _refined_from(scene, grid, tol, best)
-        if errors.max() <= tol:
-            break
-        grid, best = grid.all_raised(), values[0]
-    gamma2, uncertainty = gamma2_on_grids.gamma2(scene, tuning.TWO_VARIABLES.gamma2)
-    kappa, u = map(float, values)
-    kappa_error, u_error = map(float, errors)
-    return (
-        LayerConstants(gamma2 / 2, (kappa, kappa), u),
-        LayerConstants(uncertainty / 2, (kappa_error, kappa_error), u_error),
+    intensity, uncertainty = _limit_variance(scene)
+    kappa, error = _best(scene, tol)
+    u, u_error = _poisson_at_start(scene, tol)
+    found = (
+        LayerConstants(intensity / 2, (kappa, kappa), u),
+        LayerConstants(uncertainty / 2, (error, error), u_error),
     )
+    for name, value, reached in (("kappa", kappa, error), ("u at the start", u, u_error)):
+        if not reached <= tol:
+            raise ToleranceError(
+                f"{name} = {value:.7g} has an error of {reached:.1e}, above tol = {tol:g}; "
+                "loosen tol",
+                found,
+            )
+    return found
 
 
-def _refined_from(scene, coarse, tol, best):
-    """Refine each variable alone until it has settled; return the values of `_milne` and errors."""
-    first, second = coarse.levels
-    base = _solved(scene, coarse, best)
-    values, errors, once = base, np.zeros(2), {}
-    for symbol in coarse.levels:
-        found, once[symbol] = _refined_along(scene, coarse, symbol, base, values[0], tol)
-        values = values + found.value - base
-        errors = errors + 2 * found.error
-    # what the variables change together beyond the sum of what they change alone
-    both = _solved(scene, coarse.raised(first).raised(second), values[0])
-    together = both - once[first] - once[second] + base
-    return values + together, errors + np.abs(together)
+def _limit_variance(scene):
+    """Return gamma^2 and its error, even a large one; refuse scenes in which it may be 0."""
+    try:
+        return gamma2_on_grids.gamma2(scene, tuning.TWO_VARIABLES.gamma2)
+    except ToleranceError as refused:
+        if refused.result is None:
+            raise
+        value, error = refused.result
+    if value <= error:
+        raise SceneError(
+            f"gamma^2 of g = {quoted(scene.observable)} is 0 in this scene, or hard to tell from "
+            "it, so that there is no extrapolation length; choose another observable"
+        )
+    return value, error
 
 
-def _refined_along(scene, coarse, symbol, base, best, tol) -> tuple[Refined, np.ndarray]:
-    """Refine one variable until it has settled; return also the values after one refinement."""
-    solutions = []
+def _best(scene, tol):
+    """Return kappa and its error, from the first coarsest grid on which nothing fails.
+
+    What is coarse in one variable may have modes that neither decay nor grow, when the other is
+    refined.
+    """
+    chosen, found = tuning.TWO_VARIABLES, []
+    grid = fitted(scene, max(math.log(1 / tol), 0.0) + chosen.spare, 0)
+    for coarse in (grid.all_raised(by) for by in range(chosen.coarsest)):
+        if _size(scene, coarse) > chosen.largest:
+            break
+        try:
+            *pair, complete = _combined(scene, coarse, tol)
+        except ToleranceError:
+            continue
+        found.append(pair)
+        if complete:
+            break
+    if not found:
+        raise ToleranceError(
+            f"kappa cannot be solved for with {chosen.largest} nodes in this scene; use a smaller "
+            "n or a damping closer to 1"
+        )
+    return min(found, key=lambda pair: pair[1])
+
+
+def _combined(scene, coarse, tol):
+    """Return kappa and its error by the combination technique, and whether no grid failed."""
+    chosen = tuning.TWO_VARIABLES
+    base = _milne(scene, coarse)
+    box = 2 * abs(_milne(scene, coarse.enlarged()) - base)
+    lowest = tuple(coarse.levels.values())
+    kappa, error, complete = combined(
+        lowest,
+        lambda index: base if index == lowest else _milne(scene, coarse.with_levels(index)),
+        lambda index: (_size(scene, coarse.with_levels(index)) / chosen.largest) ** 3,
+        lambda _, error: error + box <= tol,
+        chosen.work,
+        COMBINATION_TECHNIQUE.mixed_by_motion,
+    )
+    return kappa, error + box, complete
+
+
+def _size(scene, grid):
+    """Count the nodes with g != 0 on half of a grid."""
+    axes, solve = direct_solver(scene, grid)
+    return len(_moving(solve.fold(evaluate(scene.numerical_observable(), axes))))
+
+
+def _moving(g):
+    """Return the places of the nodes with g != 0."""
+    return np.flatnonzero(np.abs(g) > tuning.TWO_VARIABLES.zero * np.max(np.abs(g)))
+
+
+def _poisson_at_start(scene, tol):
+    """Return the Poisson solution at the start, and its error; it is odd."""
+    if not any(scene.start.values()):
+        return 0.0, 0.0
 
     def solve(grid):
-        solutions.append(base if grid is coarse else _solved(scene, grid, best))
-        return solutions[-1]
+        axes, solver = direct_solver(scene, grid)
+        g = solver.fold(evaluate(scene.numerical_observable(), axes))
+        u, _ = solver.solve(g, ODD)
+        value = start_row(scene, axes) @ solver.unfold(u, ODD)
+        return value, tuning.TWO_VARIABLES.rounding * abs(value)
 
-    found = until_agreement(
-        _ever_finer(coarse, symbol),
-        solve,
-        lambda levels: np.abs(levels[-1] - levels[-2]),
-        lambda _, change: np.max(change) <= tol / tuning.TWO_VARIABLES.safety,
-    )
-    return found, solutions[1]
-
-
-def _ever_finer(grid, symbol):
-    """Resolve one variable better and better, without end; `_solved` refuses too large grids."""
-    while True:
-        yield grid
-        grid = grid.raised(symbol)
+    grid = fitted(scene, tuning.TWO_VARIABLES.depth, 1)
+    found = uniform_refinement.refined(grid, solve, lambda error, _: error / tol)
+    return float(found.value), float(found.error)
 
 
-def _solved(scene, grid, best):
-    values = _milne(scene, grid)
-    if values is None:
-        raise ToleranceError(
-            f"kappa = {best:.7g} does not settle on grids of {tuning.TWO_VARIABLES.largest} nodes; "
-            "loosen tol"
-        )
-    return values
-
-
-def _milne(scene: Scene, grid) -> np.ndarray | None:
-    """Return kappa and the Poisson solution at the start, or None if the grid is too large."""
+def _milne(scene: Scene, grid) -> float:
+    """Return kappa on one grid."""
     axes, solve = direct_solver(scene, grid)
     everywhere = solve.fold(evaluate(scene.numerical_observable(), axes))
-    kept = np.flatnonzero(
-        np.abs(everywhere) > tuning.TWO_VARIABLES.zero * np.max(np.abs(everywhere))
-    )
-    if len(kept) > tuning.TWO_VARIABLES.largest:
-        return None
+    kept = _moving(everywhere)
     # masses of both mirror images together; upwinding may make them negative in the tails
     measure, g = 2 * solve.fold(solve.stationary()), everywhere[kept]
     source = np.zeros((len(everywhere), len(kept)))
@@ -135,18 +171,13 @@ def _milne(scene: Scene, grid) -> np.ndarray | None:
     whole = odd.sum(axis=1)
     u = whole[kept]
     diffusion = (measure[kept] * g) @ u
-    scatter = math.sqrt(abs((measure @ everywhere**2) * (measure @ whole**2)))
-    if diffusion < tuning.TWO_VARIABLES.standstill * scatter:
-        raise SceneError(
-            f"gamma^2 of g = {quoted(scene.observable)} is 0 in this scene, so that there is no "
-            "extrapolation length; choose another observable, or method='monte_carlo'"
-        )
+    if diffusion <= 0:
+        raise ToleranceError("a grid is too coarse for the diffusion of int g")
     border = np.block(
         [[-solve.matrix(EVEN).toarray(), np.ones((len(measure), 1))], [measure, np.zeros(1)]]
     )
     even = np.linalg.solve(border, np.vstack([source, np.zeros((1, len(kept)))]))[kept]
-    kappa = _extrapolated(g, measure, kept, odd[kept], even, u, diffusion)
-    return np.array([kappa, start_row(scene, axes) @ solve.unfold(whole, ODD)])
+    return _extrapolated(g, measure, kept, odd[kept], even, u, diffusion)
 
 
 def _extrapolated(g, measure, kept, odd, even, u, diffusion) -> float:
@@ -154,8 +185,10 @@ def _extrapolated(g, measure, kept, odd, even, u, diffusion) -> float:
 
     The solution is kappa - x - u and the modes that decay as x -> -inf: (e + o) exp(mu x) with
     -A o = mu g e and -A e = mu g o. They carry no flux, E[g o] = 0, which fixes the constant in e.
-    1/mu^2 are the eigenvalues of one matrix on o, the product of the inverses of -A on odd and on
-    even functions (`odd` and `even`), each applied to g times a function.
+    With the inverses of -A on odd and on even functions, each applied to g times a function (`odd`
+    and `even`), o = mu odd e and e = mu even o. So K = odd even has the eigenvalues 1/mu^2 on o,
+    and all modes together are e = even w, o = K^(1/2) w, with the principal square root and any w.
+    Eigenvectors would lose up to all digits, for K is not self-adjoint.
     """
     flow = measure[kept] * g
     constant = -(flow @ odd) / diffusion @ even
@@ -166,12 +199,13 @@ def _extrapolated(g, measure, kept, odd, even, u, diffusion) -> float:
     scale = 1 / np.sqrt(masses * np.abs(g))
     without_flux = scipy.linalg.qr((flow * scale)[:, None])[0][:, 1:]
     product = without_flux.T @ ((odd @ even) * scale / scale[:, None]) @ without_flux
-    squares, vectors = np.linalg.eig(product)
-    odd_parts = scale[:, None] * (without_flux @ vectors)
-    leaving = even @ odd_parts + np.sqrt(squares.astype(complex)) * (
-        np.sign(g)[:, None] * odd_parts
+    root = scipy.linalg.sqrtm(product)
+    if np.iscomplexobj(root):
+        raise ToleranceError("the discretised Milne problem has modes that neither decay nor grow")
+    leaving = even @ (scale[:, None] * without_flux) + (np.sign(g) * scale)[:, None] * (
+        without_flux @ root
     )
     rows = np.sqrt(masses)
     matrix = rows[:, None] * np.column_stack([np.ones(len(kept)), leaving])
     size = np.linalg.norm(matrix, axis=0)
-    return (np.linalg.solve(matrix / size, rows * np.sign(g) * u) / size)[0].real
+    return float((np.linalg.solve(matrix / size, rows * np.sign(g) * u) / size)[0])

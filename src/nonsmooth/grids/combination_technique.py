@@ -13,9 +13,72 @@ import itertools
 import math
 from collections.abc import Callable
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import tuning
+from nonsmooth.progress import counter
 
 Index = tuple[int, ...]
+
+
+def combined(
+    lowest: Index,
+    evaluate: Callable[[Index], float],
+    cost: Callable[[Index], float],
+    met: Callable[[float, float], bool],
+    work: float,
+    mixed: float,
+) -> tuple[float, float, bool]:
+    """Add grids to a combination until its error is small enough.
+
+    Parameters
+    ----------
+    lowest : tuple of int
+        Level of each variable on the coarsest grid.
+    evaluate : callable
+        Takes an index to the functional on its grid. If it raises a `ToleranceError` on another
+        grid than the coarsest, that grid and all above it are left out.
+    cost : callable
+        Takes an index to the cost of its grid; above 1 it is too large.
+    met : callable
+        Takes a value and its error; returns whether the error is small enough.
+    work : float
+        Cost of all grids together, at most.
+    mixed : float
+        As for `Combination`.
+
+    Returns
+    -------
+    value, error : float
+    complete : bool
+        Whether no grid had to be left out because of a `ToleranceError`.
+    """
+    failed = set()
+
+    def evaluated(index):
+        try:
+            return evaluate(index)
+        except ToleranceError:
+            failed.add(index)
+            raise
+
+    combination = Combination(
+        lowest,
+        evaluate(lowest),
+        evaluated,
+        lambda index: math.inf if index in failed else cost(index),
+        mixed,
+    )
+    with counter("grids") as advance:
+        while not met(combination.value, combination.error):
+            try:
+                spent = combination.refine(min(work, 1.0))
+            except ToleranceError:
+                continue
+            if not spent:
+                break
+            work -= spent
+            advance(1)
+    return combination.value, combination.error, not failed
 
 
 class Combination:
@@ -31,6 +94,9 @@ class Combination:
         Takes an index to the functional on its grid.
     cost : callable
         Takes an index to the cost of its grid.
+    mixed : float, optional
+        By how much surpluses are expected to be smaller than those of their parents where two or
+        more variables are raised.
 
     Attributes
     ----------
@@ -44,8 +110,10 @@ class Combination:
         coarsest: float,
         evaluate: Callable[[Index], float],
         cost: Callable[[Index], float],
+        mixed: float = tuning.COMBINATION_TECHNIQUE.mixed,
     ):
         self._lowest, self._evaluate, self._cost = lowest, evaluate, cost
+        self._mixed = mixed
         self._values: dict[Index, float] = {}
         self._surplus: dict[Index, float] = {}
         self._missing: dict[Index, float] = {}
@@ -89,7 +157,7 @@ class Combination:
             before = self._parent(parent, k)
             if before is not None and before != self._lowest:
                 bounds.append(tuning.COMBINATION_TECHNIQUE.relapse * abs(self._surplus[before]))
-        return max(bounds) * (1.0 if len(raised) == 1 else tuning.COMBINATION_TECHNIQUE.mixed)
+        return max(bounds) * (1.0 if len(raised) == 1 else self._mixed)
 
     @property
     def error(self) -> float:

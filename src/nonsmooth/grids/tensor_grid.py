@@ -1,7 +1,7 @@
 """Tensor grids of a scene's state: their box, their resolution, and the solver on them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,6 +52,10 @@ class Grid:
     def at_level(self, level: int, margin: float = 0.0) -> "Grid":
         """Return the grid with all variables at one level."""
         return replace(self, levels=dict.fromkeys(self.levels, level), margin=margin)
+
+    def with_levels(self, levels: Iterable[int]) -> "Grid":
+        """Return the grid with a level for each variable, in their order."""
+        return replace(self, levels=dict(zip(self.levels, levels, strict=True)))
 
     def enlarged(self) -> "Grid":
         """Return the grid on a larger box, to see whether its size matters."""

@@ -105,6 +105,9 @@ class CombinationTechnique:
     # one directly below may be small by chance
     relapse: float = 0.25
     mixed: float = 0.25  # chosen: factor on surpluses where two or more variables are raised
+    # chosen: the same for displacement and velocity, or forcing and velocity, refined separately;
+    # the motion mixes them
+    mixed_by_motion: float = 1.0
 
 
 @dataclass(frozen=True)

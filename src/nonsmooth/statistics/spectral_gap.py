@@ -37,10 +37,10 @@ def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
     Returns
     -------
     Estimate
-        The error is the difference between two grids, plus the effect of the finite box, plus
-        rounding. From three grids on, the difference is multiplied by the square root of the factor
-        by which differences shrink (the larger of the last two such factors, at most 1), because
-        errors shrink like differences.
+        The error is the difference between two grids, at least a part of the difference before,
+        plus the effect of the finite box, plus rounding. From three grids on, the difference is
+        multiplied by the square root of the factor by which differences shrink (the larger of the
+        last two such factors, at most 1), because errors shrink like differences.
 
     Raises
     ------
@@ -82,10 +82,16 @@ def _gap(scene, tol):
     )
     (value, _), (own, beyond) = refined.value, refined.error
     if not refined.met:
+        # fine grids may lose what coarser ones have found
+        found = min(
+            (refined.solutions[:count] for count in range(2, len(refined.solutions) + 1)),
+            key=_of_level,
+        )
+        value, reached = found[-1][0], _of_level(found) + beyond
         raise ToleranceError(
-            f"the spectral gap {value:.10g} has an error of {own:.1e}, above tol = {tol:g} "
+            f"the spectral gap {value:.10g} has an error of {reached:.1e}, above tol = {tol:g} "
             "relative; loosen tol",
-            (value, own + beyond),
+            (value, reached),
         )
     return value, own + beyond
 
@@ -93,11 +99,13 @@ def _gap(scene, tol):
 def _of_level(found):
     """Return the error of the last of several rates, without that of the box.
 
-    Each rate comes with its rounding error.
+    Each rate comes with its rounding error. Errors may change their sign, so that two levels agree
+    by chance; a change therefore counts as at least a part of the one before.
     """
-    changes = [
-        max(abs(fine - coarse), rounding) for (coarse, _), (fine, rounding) in pairwise(found)
-    ]
+    changes = []
+    for (coarse, _), (fine, rounding) in pairwise(found):
+        least = changes[-1] / tuning.SPECTRAL_GAP.gain if changes else 0.0
+        changes.append(max(abs(fine - coarse), rounding, least))
     fall = max((b / a for a, b in pairwise(changes[-3:])), default=1.0)
     return changes[-1] * math.sqrt(min(fall, 1.0)) + found[-1][1]
 
@@ -124,18 +132,26 @@ def _with_two_variables(scene: Scene, tol: float) -> tuple[Iterable, Callable, C
     chosen = tuning.SPECTRAL_GAP
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), chosen.fitted)
     unseen = iter(range(chosen.finest + 1))  # levels on which no larger box has been tried yet
+    effects = []
 
     def solve(level):
         return gap_on(scene, grid.at_level(level), chosen.iteration * tol)
 
     def box(found, own, allowed):
-        """Measure the effect of the box on a coarse level, and on finer ones if it is too large."""
-        while True:
+        """Measure the effect of the box on a coarse level, and on finer ones if it is too large.
+
+        The smallest result is the best: the others are due to the elements that are added.
+        """
+        while not (effects and own + min(effects) <= allowed):
             level = next(unseen)
-            wider, _ = gap_on(scene, grid.at_level(level).enlarged(), chosen.iteration * tol)
-            beyond = 2 * abs(wider - found[level][0])
-            if own + beyond <= allowed or level == len(found) - 1:
-                return beyond
+            try:
+                wider, _ = gap_on(scene, grid.at_level(level).enlarged(), chosen.iteration * tol)
+                effects.append(2 * abs(wider - found[level][0]))
+            except np.linalg.LinAlgError:
+                effects.append(math.inf)
+            if level == len(found) - 1:
+                break
+        return min(effects)
 
     return range(chosen.finest + 1), solve, box
 
@@ -157,6 +173,11 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     -------
     rate, error : float
         The error is that of the iteration and of rounding.
+
+    Raises
+    ------
+    LinAlgError
+        If the slowest mode on the grid does not decay, as all modes of a scene do.
     """
     _, solver = tensor_grid.direct_solver(scene, grid)
     wanted, slowest = tuning.SPECTRAL_GAP.wanted, []
@@ -171,6 +192,8 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
         rates = 1 / largest[np.abs(largest) > 1e-12]
         slowest.append(min((rate.real, _moved(rates, rate)) for rate in rates))
     rate, moved = min(slowest)
+    if rate <= 0:
+        raise np.linalg.LinAlgError("a mode on the grid does not decay")
     return float(rate), float(moved + accuracy * rate)
 
 

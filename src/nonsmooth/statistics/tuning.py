@@ -78,7 +78,10 @@ class SpectralGap:
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
     fitted: int = 1  # chosen: level on which the box is fitted
-    finest: int = 8  # chosen: last level; bounds the time
+    finest: int = 6  # chosen: last level; bounds the time to some 20 s
+    # chosen: largest factor by which a level reduces the error; if changes fall by more, the error
+    # has changed its sign
+    gain: float = 30.0
     # chosen: polynomial degrees with one variable, until two agree
     degrees: tuple[int, ...] = (8, 12, 16, 20, 24)
     iteration: float = 1e-2  # chosen: part of the tolerance for the iteration

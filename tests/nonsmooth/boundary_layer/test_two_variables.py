@@ -18,6 +18,20 @@ def test_ornstein_uhlenbeck():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("damping", [0.3, 1.0])
+def test_solutions_of_different_boxes_and_grids_agree(damping):
+    """Two tolerances lead to other boxes and grids; both results are within their errors.
+
+    The modes of this scene are so far from orthogonal that by eigenvectors they lose all digits.
+    """
+    scene = ns.Scene("obstacle", damping=damping, potential="x**2/2", observable="x")
+    coarse, fine = (ns.extrapolation_length(scene, tol) for tol in (5e-3, 5e-4))
+    assert coarse.error <= 5e-3
+    assert fine.error <= 5e-4
+    assert abs(coarse.value - fine.value) <= coarse.error + fine.error
+
+
+@pytest.mark.slow
 def test_yielding_displacement():
     """The displacement crosses b when the plastic strain crosses b - 1, for it yields at x = 1.
 

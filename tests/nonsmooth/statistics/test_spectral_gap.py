@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.paths.ensembles import paths_at
 from nonsmooth.paths.sampling import Sampling
 from references import LAMBDA_LIMIT
@@ -52,6 +52,19 @@ def test_correlations_decay_at_the_gap():
     # the slowest mode bounds the decay: |E z_t| <= c e^(-gap t), c from the first time; the
     # factor e allows for a phase of the complex pair that is small at the first time
     assert np.all(size <= np.e * (size[0] + noise) * np.exp(-gap * (times - times[0])) + noise)
+
+
+@pytest.mark.parametrize("tol", [1e-5, 1e-12])
+def test_finer_tolerances_keep_what_coarser_ones_know(tol):
+    """In a stiff scene a smaller tolerance is met, or refused with a value that is right."""
+    scene = ns.Scene("obstacle", n=1e4, damping=0.2, potential="x**2/2", observable="x")
+    coarse = ns.spectral_gap(scene, 1e-3)
+    try:
+        fine = ns.spectral_gap(scene, tol)
+    except ToleranceError as refused:
+        fine = refused.result
+    assert abs(fine.value - coarse.value) <= fine.error + coarse.error
+    assert fine.error <= coarse.error
 
 
 def test_more_variables_are_refused():
