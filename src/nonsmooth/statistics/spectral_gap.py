@@ -132,7 +132,7 @@ def _with_two_variables(scene: Scene, tol: float) -> tuple[Iterable, Callable, C
     chosen = tuning.SPECTRAL_GAP
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), chosen.fitted)
     unseen = iter(range(chosen.finest + 1))  # levels on which no larger box has been tried yet
-    effects = []
+    effects: list[float] = []
 
     def solve(level):
         return gap_on(scene, grid.at_level(level), chosen.iteration * tol)
