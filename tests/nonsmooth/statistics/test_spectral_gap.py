@@ -54,6 +54,7 @@ def test_correlations_decay_at_the_gap():
     assert np.all(size <= np.e * (size[0] + noise) * np.exp(-gap * (times - times[0])) + noise)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tol", [1e-5, 1e-12])
 def test_finer_tolerances_keep_what_coarser_ones_know(tol):
     """In a stiff scene a smaller tolerance is met, or refused with a value that is right."""
