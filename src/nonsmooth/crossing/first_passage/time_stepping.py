@@ -22,7 +22,7 @@ from scipy.interpolate import CubicSpline
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.grids.elements import discontinuous
-from nonsmooth.grids.grading import graded
+from nonsmooth.grids.grading import graded, split
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
 
@@ -57,12 +57,13 @@ def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.nd
         driven, other, fine, short = resolution
         grid, step = problem.grid(driven, other, tuning.STEPPED_GRIDS), settings.steps[short]
         spread = grid.way * damping * min(last, math.sqrt(settings.slow * last / damping))
-        degree, finest = settings.elements[fine]
+        degree, finest, widest = settings.elements[fine]
         interval = _Interval(
             problem.lower,
             problem.upper,
             degree,
             finest * min(grid.way, -problem.lower, problem.upper),
+            widest,
             settings.reached / math.sqrt(step) * spread,
         )
         first = step * settings.first * min(duration, settings.early / damping)
@@ -83,6 +84,8 @@ class _Interval:
         Polynomial degree.
     finest : float
         Smallest element, next to a threshold.
+    widest : float
+        Largest element within the interval, over the distance of a threshold.
     reach : float
         Where the elements end if there is no threshold.
 
@@ -94,9 +97,11 @@ class _Interval:
         Interpolates at x = 0 from the upper half of the nodes.
     """
 
-    def __init__(self, lower: float, upper: float, degree: int, finest: float, reach: float):
-        above = _towards(upper, finest, reach, -lower)
-        below = _towards(-lower, finest, reach, upper)
+    def __init__(
+        self, lower: float, upper: float, degree: int, finest: float, widest: float, reach: float
+    ):
+        above = _towards(upper, finest, widest, reach, -lower)
+        below = _towards(-lower, finest, widest, reach, upper)
         edges = np.concatenate([-below[::-1], [0.0], above])
         # beyond a threshold q = 0: an element is put there, for upwinding, and left out again
         walls = np.isfinite([lower, upper])
@@ -120,11 +125,12 @@ class _Interval:
             self.row = row
 
 
-def _towards(wall, finest, reach, other):
+def _towards(wall, finest, widest, reach, other):
     """Edges beyond 0 up to a threshold, or up to where paths hardly get if there is none."""
     ratio = tuning.TIME_STEPPING.ratio
     if math.isfinite(wall):
-        return np.append(wall - graded(wall, finest, ratio)[1:], wall)
+        edges = np.append(wall - graded(wall, finest, ratio), wall)
+        return split(edges, np.ceil(np.diff(edges) / (widest * wall)).astype(int))[1:]
     return graded(max(reach, other), other / 2, ratio)[::-1]
 
 

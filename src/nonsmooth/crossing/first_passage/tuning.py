@@ -202,14 +202,14 @@ class TimeStepping:
 
     until: float = 6.0  # chosen: last time, in relaxation times; later the transform is tame
     ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x
-    # chosen: polynomial degree in x, and the smallest element over the lesser of the distance to
-    # the threshold and of the way that int g goes in a relaxation time
-    elements: tuple[tuple[int, float], ...] = (
-        (3, 2e-2),
-        (4, 1e-2),
-        (5, 5e-3),
-        (6, 2e-3),
-        (7, 1e-3),
+    # chosen: polynomial degree in x; the smallest element over the lesser of the distance to the
+    # threshold and of the way that int g goes in a relaxation time; the largest over the distance
+    elements: tuple[tuple[int, float, float], ...] = (
+        (3, 2e-2, 0.25),
+        (4, 1e-2, 0.2),
+        (5, 5e-3, 0.15),
+        (6, 2e-3, 0.12),
+        (7, 1e-3, 0.1),
     )
     steps: tuple[float, ...] = (1.0, 0.5, 0.25, 0.125, 0.06)  # chosen: lengths, relative to ...
     longest: float = 0.05  # chosen: ... the longest step, in relaxation times, and to ...
