@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
+from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
+from nonsmooth.kinetic.adding_doubling import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 
 SCENES = {
@@ -55,3 +57,27 @@ class TestCrossing:
         assert abs(late - early) <= late_error + early_error
         for value, error in ((late, late_error), (early, early_error)):
             assert abs(value - 0.69682) <= error + 3e-4
+
+    def test_asking_for_less_costs_no_more(self, monkeypatch):
+        """Fewer times, or a larger tolerance, take at most 1.2 times the work.
+
+        Nearly all of it is the doubling of slabs, which grows like the cube of the nodes.
+        """
+        work = []
+
+        def counted(grid, *arguments):
+            work.append(len(grid.speeds) ** 3)
+            return fields(grid, *arguments)
+
+        def asked(times, tol):
+            work.clear()
+            deterministic_crossing(OBSTACLE, -6.0, 6.0, times, tol)
+            return sum(work)
+
+        monkeypatch.setattr(plane, "fields", counted)
+        times, rng = 100 * np.geomspace(0.1, 20, 40), np.random.default_rng(5)
+        whole = asked(times, 3e-4)
+        for _ in range(4):
+            some = np.sort(rng.choice(times, rng.integers(1, 6), replace=False))
+            assert asked(some, 3e-4) <= 1.2 * whole
+        assert asked(times, 2e-3) <= 1.2 * whole
