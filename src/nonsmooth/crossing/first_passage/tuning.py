@@ -260,9 +260,9 @@ STEPPED_GRIDS = PlaneGrids(
     ),
 )
 # driven and other variable of the grid, x, time
-STEPPED_PARTS = (Part(1, 4, 1), Part(1, 4, 1), Part(1, 3, 1), Part(0, 3, 1))
+STEPPED_PARTS = (Part(1, 2, 1), Part(1, 2, 1), Part(1, 3, 1), Part(0, 3, 1))
 # driven and other variable of the grid, basis, contour
-PLANE_PARTS = (Part(0, 4, 1), Part(0, 4, 1), Part(1, 3, -1), Part(1, 4, -1))
+PLANE_PARTS = (Part(0, 3, 1), Part(0, 3, 1), Part(1, 3, -1), Part(1, 4, -1))
 
 # The numbers of these records are described at `Settings` and `ContourSettings`. All without a
 # comment are chosen by trial; benchmarks/crossing_honesty.py checks the errors that result.
