@@ -95,8 +95,12 @@ def sampled_kappa(
         own = labelled(seed, attempt)
         sampling = Sampling(step, paths, own, threads=threads, precision="float64")
         value, error = _estimate(scene, lag, sampling)
-        if error <= (tuning.SAMPLED.tolerance * abs(value) if tol is None else tol):
+        wanted = tuning.SAMPLED.tolerance * abs(value) if tol is None else tol
+        if error <= wanted:
             return Estimate(value, error, "Monte Carlo", time.perf_counter() - began)
+        # twice the paths halve an error at best
+        if error > wanted * 2 ** (tuning.SAMPLED.attempts - 1 - attempt):
+            break
         lag, paths = 1.5 * lag, 2 * paths
     raise ToleranceError(
         f"kappa = {value:.3g} has an error of {error:.1e}, above tol; loosen tol",

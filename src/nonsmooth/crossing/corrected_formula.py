@@ -79,7 +79,10 @@ def corrected_crossing(
         If an error is above `tol`; with the values and errors as its `result`.
     """
     _require_order(scene, order)
-    constants, errors = layer_constants(scene, seed, threads, accuracy)
+    try:
+        constants, errors = layer_constants(scene, seed, threads, accuracy)
+    except ToleranceError as refused:  # what it has reached are constants, not probabilities
+        raise ToleranceError(str(refused)) from None
     times = p * np.asarray(horizons, dtype=float)
     formula = Expansion(constants, *(np.sqrt(p) * level for level in threshold))
     if formula.moved_lower < 0 < formula.moved_upper:
