@@ -141,11 +141,21 @@ def _refined(scene, grid, tol, solve):
     -------
     dict
         For each array the pair of its values on the last grid and of their differences to those on
-        the one before.
+        the one before. Two grids may agree where the error changes its sign, so a difference counts
+        as at least a part of the one before.
     """
 
     def difference(found):
-        return {key: np.abs(found[-1][key] - found[-2][key]) for key in found[-1]}
+        change = {key: np.zeros_like(values) for key, values in found[0].items()}
+        for coarse, fine in pairwise(found):
+            change = {
+                key: np.maximum(
+                    np.abs(fine[key] - coarse[key]),
+                    change[key] / tuning.INVARIANT_DENSITY.gain,
+                )
+                for key in fine
+            }
+        return change
 
     def relative(values, difference):
         return max(np.max(difference[key]) / np.max(values[key]) for key in values)

@@ -73,8 +73,11 @@ def _gap(scene, tol):
             "correlations by Monte Carlo"
         )
 
+    # two grids of two variables agree by chance too often
+    least = 2 if scene.is_line else tuning.SPECTRAL_GAP.least_grids
+
     def error(found):
-        value, own = found[-1][0], _of_level(found)
+        value, own = found[-1][0], _of_level(found) if len(found) >= least else math.inf
         return own, box(found, own, tol * value) if own <= tol * value else 0.0
 
     refined = until_agreement(
@@ -85,9 +88,9 @@ def _gap(scene, tol):
         # fine grids may lose what coarser ones have found
         found = min(
             (refined.solutions[:count] for count in range(2, len(refined.solutions) + 1)),
-            key=_of_level,
+            key=_of_unsettled,
         )
-        value, reached = found[-1][0], _of_level(found) + beyond
+        value, reached = found[-1][0], _of_unsettled(found) + beyond
         raise ToleranceError(
             f"the spectral gap {value:.10g} has an error of {reached:.1e}, above tol = {tol:g} "
             "relative; loosen tol",
@@ -107,7 +110,15 @@ def _of_level(found):
         least = changes[-1] / tuning.SPECTRAL_GAP.gain if changes else 0.0
         changes.append(max(abs(fine - coarse), rounding, least))
     fall = max((b / a for a, b in pairwise(changes[-3:])), default=1.0)
+    if len(changes) < 3:  # one fall may be chance
+        fall = 1.0
     return changes[-1] * math.sqrt(min(fall, 1.0)) + found[-1][1]
+
+
+def _of_unsettled(found):
+    """Return the error of the last of several rates that need not have begun to converge."""
+    rates = [rate for rate, _ in found]
+    return max(abs(fine - coarse) for coarse, fine in pairwise(rates[-3:])) + found[-1][1]
 
 
 def _with_one_variable(scene):

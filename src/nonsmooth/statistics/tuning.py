@@ -57,6 +57,9 @@ class InvariantDensity:
     tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2})
     # chosen: on coarser grids the error that two levels show may be smaller than the true one
     loosest: float = 0.3
+    # chosen: largest factor by which a level reduces the error; if a difference falls by more, the
+    # error has changed its sign
+    gain: float = 10.0
     points: int = 201  # chosen: number of points of a density unless points are given
     deepest: float = 80.0  # derived: exp(-80) is below rounding of the norm of a closed form
     gauss: int = 16  # chosen: Gauss points for each piece of a bin
@@ -82,6 +85,7 @@ class SpectralGap:
     # chosen: largest factor by which a level reduces the error; if changes fall by more, the error
     # has changed its sign
     gain: float = 30.0
+    least_grids: int = 3  # chosen: of two variables, before their changes tell the error
     # chosen: polynomial degrees with one variable, until two agree
     degrees: tuple[int, ...] = (8, 12, 16, 20, 24)
     iteration: float = 1e-2  # chosen: part of the tolerance for the iteration
