@@ -14,6 +14,7 @@ Poisson solver and resolves the slowest modes; the others resolve early times.
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import scipy.linalg
@@ -27,6 +28,7 @@ from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid
+from nonsmooth.progress import counter, interruptible
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics import tuning
 
@@ -71,7 +73,14 @@ def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np
     if uniform.met:
         last, error = uniform.value, uniform.error
     else:
-        last, error = _refined(scene, grid, solve, share)
+        with counter("grids") as advance:
+
+            def counted(grid):
+                found = interruptible(partial(solve, grid))
+                advance(1)
+                return found
+
+            last, error = _refined(scene, grid, counted, share)
     # w is the difference of terms as large as the standard deviation
     w, v = np.abs(last)
     error += tuning.MOMENTS_ON_GRIDS.rounding * np.array([w + np.sqrt(v), v + w**2])
