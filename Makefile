@@ -19,11 +19,13 @@ smoke: env ## every rule at reduced sizes, into results/smoke
 	$(BIN)/python -m workflow.unlock
 	$(BIN)/snakemake --cores $(CORES) --configfile config/smoke.yaml -- all speed_against_error
 
+# two processes, in which the threads of dense linear algebra would be in each other's way
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup
 test: env ## the tests but the slowest, a reduced run of the whole workflow among them
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+	$(PYTEST) -m "not slow"
 
 test-all: env ## all tests
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(PYTEST)
 
 test-slurm: .venv-slurm/installed ## the reduced run through Slurm gives the same bytes; starts a node if there is none
 	.venv-slurm/bin/python -m tests.slurm.trial

@@ -52,6 +52,7 @@ PATIENCE = 20  # times as long may a call take that waits for the processor
 WORKERS = 2
 LONGEST_MESSAGE = 300
 MEMORY = 8 * 2**30  # bytes of address space of a worker, so that none takes the whole machine
+SIGNED = ("ns.mean(", "ns.extrapolation_length(")  # functions whose estimates may be negative
 WELL = ("fine", "refused", "long")
 
 NAMES = {
@@ -161,14 +162,17 @@ def _place(error):
 
 
 def _of_result(call, result):
-    wrong = nonsense(result)
+    wrong = nonsense(result, signed=call.startswith(SIGNED))
     return ("nonsense", wrong, call.partition("(")[0]) if wrong else ("fine", "", "")
 
 
-def nonsense(result: object) -> str:
-    """Say what is wrong with a result; nothing if it makes sense."""
+def nonsense(result: object, signed: bool = False) -> str:
+    """Say what is wrong with a result; nothing if it makes sense.
+
+    An estimate may be negative only if it is `signed`.
+    """
     if isinstance(result, ns.Estimate):
-        checks = {"value": (result.value, 0.0, np.inf), "error": (result.error, 0.0, np.inf)}
+        checks = {"value": (result.value, -np.inf if signed else 0.0, np.inf), "error": (result.error, 0.0, np.inf)}
     elif isinstance(result, xr.Dataset):
         checks = {str(name): _range(result, str(name)) for name in result.variables}
     elif isinstance(result, np.ndarray):  # a probability or a density of Brownian motion

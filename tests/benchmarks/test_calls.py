@@ -35,9 +35,10 @@ def test_nonsense_is_recognised():
     for value, error in ((np.nan, 0.0), (1.0, -1.0), (-1.0, 0.0), (np.inf, 0.0), (1.0, np.nan)):
         assert calls.nonsense(ns.Estimate(value, error, "none", 0.0))
     assert not calls.nonsense(ns.Estimate(1.0, 0.1, "none", 0.0))
+    assert not calls.nonsense(ns.Estimate(-1.0, 0.1, "none", 0.0), signed=True)
     found = ns.crossing_probability(ns.Scene("friction"), 0.5, [1.0], method="asymptotic")
     assert not calls.nonsense(found)
-    assert calls.nonsense(found.assign(probability=1.1 + 0 * found["probability"]))
+    assert calls.nonsense(found.assign(probability=2.0 + 0 * found["probability"]))
     assert calls.nonsense(np.array([0.5, -0.1]))
 
 
