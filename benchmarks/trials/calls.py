@@ -172,7 +172,10 @@ def nonsense(result: object, signed: bool = False) -> str:
     An estimate may be negative only if it is `signed`.
     """
     if isinstance(result, ns.Estimate):
-        checks = {"value": (result.value, -np.inf if signed else 0.0, np.inf), "error": (result.error, 0.0, np.inf)}
+        checks = {
+            "value": (result.value, -np.inf if signed else 0.0, np.inf),
+            "error": (result.error, 0.0, np.inf),
+        }
     elif isinstance(result, xr.Dataset):
         checks = {str(name): _range(result, str(name)) for name in result.variables}
     elif isinstance(result, np.ndarray):  # a probability or a density of Brownian motion
