@@ -292,8 +292,13 @@ LINE = ContourSettings(
 LINE_FROM_AFAR = replace(
     LINE,
     relative=False,
-    # chosen: from a far start the probability rises fast, up to 1, which takes more nodes
-    levels=tuple(level._replace(spacing=0.65 * level.spacing) for level in LINE.levels),
+    # chosen: from a far start the probability rises fast, up to 1, which takes more nodes; degrees
+    # 6 and 7 share an error of some 3e-8 there, so that they are not compared
+    levels=tuple(
+        level._replace(spacing=0.65 * level.spacing)
+        for level in LINE.levels
+        if level.resolution != 7
+    ),
     rise_truncation=1e-9,
     advice="loosen tol, or use method='monte_carlo'",
 )

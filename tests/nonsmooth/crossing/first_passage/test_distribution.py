@@ -43,6 +43,18 @@ def test_crossings_in_flight():
     assert np.allclose(mirrored.probability, found.probability, rtol=0, atol=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("start", "horizon", "exact"),
+    # on elements of degree 14, where degree 11 has the same nine digits
+    [(6.0, 9.0, 0.9769495172), (6.0, 4.0, 0.9648428303)],
+)
+def test_neighbouring_degrees_do_not_agree_by_chance(start, horizon, exact):
+    """From afar degrees 6 and 7 share an error; what is stated holds all the same."""
+    found = deterministic(ns.Scene("friction", start={"y": start}), 3.0, [horizon])
+    rounded = 1e-10  # of the value printed here
+    assert abs(found.probability[0] - exact) <= found.probability_error[0] + rounded
+
+
 @pytest.mark.slow
 def test_monte_carlo_from_afar():
     """The wall is next to where the flight ends; 4.5 standard errors: false alarm 7e-6."""
