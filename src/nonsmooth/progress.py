@@ -10,7 +10,8 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import AbstractContextManager, contextmanager
-from typing import TypeVar
+from functools import partial
+from typing import Any, TypeVar
 
 Result = TypeVar("Result")
 
@@ -76,11 +77,13 @@ def interruptible(call: Callable[[], Result]) -> Result:
     result: Future = Future()
     context = contextvars.copy_context()  # has numpy's treatment of overflow
 
-    def run():
-        try:
-            result.set_result(context.run(call))
-        except BaseException as error:
-            result.set_exception(error)
-
-    threading.Thread(target=run, daemon=True).start()
+    threading.Thread(target=fulfil, args=(result, partial(context.run, call)), daemon=True).start()
     return result.result()
+
+
+def fulfil(promised: Future, call: Callable[[], Any]) -> None:
+    """Keep what a call returns, or raises, for the thread that waits for it."""
+    try:
+        promised.set_result(call())
+    except BaseException as error:
+        promised.set_exception(error)

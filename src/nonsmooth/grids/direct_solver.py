@@ -10,6 +10,7 @@ import threading
 import weakref
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,6 +21,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.progress import fulfil
 from nonsmooth.scenes.scene import Scene
 
 
@@ -58,7 +60,7 @@ class SparseFactors:
         self._made: list[spla.SuperLU] = []
         workshop = SparseFactors._workshop = SparseFactors._workshop or _Workshop()
         done: Future = Future()
-        workshop.put(_task(matrix, self._made, done))
+        workshop.put(partial(fulfil, done, partial(_factorise, matrix, self._made)))
         # the task must not refer to this object, or it would never be freed
         weakref.finalize(self, workshop.put, self._made.clear).atexit = False
         try:
@@ -77,22 +79,15 @@ class SparseFactors:
         return self._made[0].solve(right, trans=trans)
 
 
-def _task(matrix, made, done):
-    def factorise():
-        try:
-            made.append(
-                spla.splu(
-                    matrix.tocsc(),
-                    permc_spec="MMD_AT_PLUS_A",
-                    diag_pivot_thresh=1e-3,
-                    options={"SymmetricMode": True},
-                )
-            )
-            done.set_result(None)
-        except BaseException as error:
-            done.set_exception(error)
-
-    return factorise
+def _factorise(matrix, made):
+    made.append(
+        spla.splu(
+            matrix.tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=1e-3,
+            options={"SymmetricMode": True},
+        )
+    )
 
 
 class _Factors:

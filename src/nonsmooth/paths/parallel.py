@@ -6,12 +6,13 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 from nonsmooth.paths import cost, tuning
 from nonsmooth.paths.kernels.random_numbers import blocks
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.progress import bar
+from nonsmooth.progress import bar, fulfil
 
 _of_thread = threading.local()  # its attribute `run` is the `_Run` that a thread works for
 
@@ -133,7 +134,4 @@ def _serve(todo, work, run):
     _of_thread.run = run
     while (task := todo.get()) is not None and not run.stopped:
         result, job = task
-        try:
-            result.set_result(work(job))
-        except BaseException as error:
-            result.set_exception(error)
+        fulfil(result, partial(work, job))

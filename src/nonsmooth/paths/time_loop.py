@@ -128,7 +128,7 @@ def march_and_sum(s: Any, panel: Panel, lanes: int, steps: int, sums: np.ndarray
         return
     for first, last in _pieces(len(sums)):
         _march(s, panel, lanes, 0, steps + 1, steps, *EVERYWHERE, sums[first:last])
-        count((min(last, len(sums)) - first) * steps)
+        count((last - first) * steps)
 
 
 def compile_march(s: Any, panel: Panel) -> None:
@@ -196,22 +196,8 @@ def _add_products(total, lanes, sums):
     for begin in range(0, lanes, _TOGETHER):
         for j in range(min(_TOGETHER, lanes - begin)):
             d, m = total[TOTAL_DELTA, begin + j], total[TOTAL_MARTINGALE, begin + j]
-            q, r = d * d, m * m - total[TOTAL_VARIATION, begin + j]
-            partial[0, j] += 1.0
-            partial[1, j] += d
-            partial[2, j] += q
-            partial[3, j] += m
-            partial[4, j] += r
-            partial[5, j] += d * d
-            partial[6, j] += d * q
-            partial[7, j] += d * m
-            partial[8, j] += d * r
-            partial[9, j] += q * q
-            partial[10, j] += q * m
-            partial[11, j] += q * r
-            partial[12, j] += m * m
-            partial[13, j] += m * r
-            partial[14, j] += r * r
+            rest = m * m - total[TOTAL_VARIATION, begin + j]
+            _gather(partial, j, (1.0, d, d * d, m, rest))
     _add_symmetric(partial, sums)
 
 
@@ -222,18 +208,18 @@ def _add_changes(total, other, lanes, sums):
     for begin in range(0, lanes, _TOGETHER):
         for j in range(min(_TOGETHER, lanes - begin)):
             d, after = total[TOTAL_DELTA, begin + j], other[TOTAL_DELTA, begin + j]
-            c, q = after - d, after * after - d * d
-            partial[0, j] += 1.0
-            partial[1, j] += c
-            partial[2, j] += q
-            partial[3, j] += d
-            partial[4, j] += c * c
-            partial[5, j] += c * q
-            partial[6, j] += c * d
-            partial[7, j] += q * q
-            partial[8, j] += q * d
-            partial[9, j] += d * d
+            _gather(partial, j, (1.0, after - d, after * after - d * d, d))
     _add_symmetric(partial, sums)
+
+
+@inlined
+def _gather(partial, j, values):
+    """Add the products of some values, by rows of the upper triangle, to a partial sum."""
+    k = 0
+    for a in range(len(values)):
+        for b in range(a, len(values)):
+            partial[k, j] += values[a] * values[b]
+            k += 1
 
 
 @inlined
@@ -328,7 +314,7 @@ def march_pair_and_sum(
     for first, last in _pieces(len(sums)):
         pair = fine, coarse, panel, other, lanes, 0, 2 * steps + 1, steps
         _march_pair(*pair, *levels, began + first * span, span, passage, sums[first:last])
-        count((min(last, len(sums)) - first) * 2 * steps)
+        count((last - first) * 2 * steps)
 
 
 @kernel
