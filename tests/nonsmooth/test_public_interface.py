@@ -29,6 +29,33 @@ def test_public_functions_are_annotated_and_documented(name):
     )
 
 
+OF_SCENES = [
+    name
+    for name in FUNCTIONS
+    if next(iter(inspect.signature(getattr(ns, name)).parameters)) == "scene"
+]
+
+
+@pytest.mark.parametrize("name", OF_SCENES)
+@pytest.mark.parametrize(
+    ("given", "written"),
+    [
+        ("friction", "write nonsmooth.Scene('friction')"),
+        ("Elastoplastic", "write nonsmooth.Scene('elasto_plastic')"),
+        ({"model": "friction"}, "write nonsmooth.Scene(**scene)"),
+        (None, "write nonsmooth.Scene('friction'), for example"),
+    ],
+)
+def test_what_is_no_scene_is_told_how_to_make_one(name, given, written):
+    """Every function that takes a scene says so before it looks at anything else."""
+    function = getattr(ns, name)
+    others = list(inspect.signature(function).parameters.values())[1:]
+    needed = {one.name: 1.0 for one in others if one.default is inspect.Parameter.empty}
+    with pytest.raises(ns.NonsmoothError) as told:
+        function(given, **needed)
+    assert str(told.value).endswith(written)
+
+
 def test_the_docstring_names_everything_public():
     """The docstring and `__init__.pyi`, which type checkers see, name everything public."""
     for name in ns.__all__:

@@ -48,6 +48,23 @@ _OPERATIONS = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
 }
+# other signs and names, and what is written here
+_WRITTEN = str.maketrans(
+    {"^": "**", "²": "**2", "³": "**3", "·": "*", "×": "*", "−": "-", "η": "eta", "ζ": "zeta"}
+    | {"π": "pi", "[": "(", "]": ")", "{": "(", "}": ")"}
+)
+_MEANT = {
+    "velocity": "y",
+    "displacement": "x",
+    "position": "x",
+    "deformation": "x",
+    "ln": "log",
+    "sgn": "sign",
+    "arctan": "atan",
+    "fabs": "abs",
+    "maximum": "max",
+    "minimum": "min",
+}
 _COMPARED = ("max", "min")  # take two arguments or more, the other functions one
 # sums and products without brackets are deep in the syntax tree, but flat in sympy's
 _FLAT = (ast.Add, ast.Sub), (ast.Mult, ast.Div)
@@ -99,14 +116,15 @@ def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
 def _syntax_tree(text):
     """Return the syntax tree of a formula, and the formula as one line."""
     if not isinstance(text, str):
-        raise ExpressionError("it is not text; put it in quotes, for example 'x**2/2'")
+        raise ExpressionError("it is not text; write it in quotes, for example 'x**2/2'")
     if len(text) > tuning.FORMULA.length:
         raise ExpressionError(f"it has {len(text)} characters; use at most {tuning.FORMULA.length}")
     line = " ".join(text.split())
     if not line:
         raise ExpressionError(f"it is empty; {_EXAMPLE}")
     if foreign := _FOREIGN.search(line):
-        cure = "write ** for powers" if foreign[0] == "^" else _EXAMPLE
+        written = line.translate(_WRITTEN)
+        cure = _EXAMPLE if _FOREIGN.search(written) else f"write {quoted(written)}"
         raise ExpressionError(f"{quoted(foreign[0])} means nothing in a formula; {cure}")
     if glued := _NUMBER_AND_NAME.search(line):
         raise ExpressionError(f"{quoted(glued[0], _PART)} is no number; write * for a product")
@@ -163,9 +181,11 @@ class _Reader:
                 with self._deeper():
                     return self._checked(self._call(node, depth))
             case ast.Call(keywords=[]):
+                self._refuse_module(node.func)
                 raise ExpressionError(
                     f"{self._quoted(node.func)} is no function; for a product write *"
                 )
+        self._refuse_module(node)
         raise ExpressionError(f"{self._quoted(node)} is not arithmetic; {_EXAMPLE}")
 
     @contextmanager
@@ -219,8 +239,15 @@ class _Reader:
         raise self._unknown(name)
 
     def _unknown(self, name):
-        known = ", ".join([*sorted(self._variables), "pi", *FUNCTIONS])
-        return ExpressionError(f"{quoted(name, _PART)} is unknown; use {known}")
+        known = [*sorted(self._variables), "pi", *FUNCTIONS]
+        meant = _MEANT.get(name.lower(), name.lower())
+        cure = f"write {meant}" if meant in known else f"use {', '.join(known)}"
+        return ExpressionError(f"{quoted(name, _PART)} is unknown; {cure}")
+
+    def _refuse_module(self, node):
+        """Tell how np.sin or math.pi is written."""
+        if isinstance(node, ast.Attribute) and node.attr in (*FUNCTIONS, "pi"):
+            raise ExpressionError(f"{self._quoted(node)} is unknown; write {node.attr}")
 
     def _operation(self, node, depth):
         kind = type(node.op)

@@ -10,7 +10,7 @@ from typing import ClassVar, Protocol, runtime_checkable
 import numpy as np
 import sympy
 
-from nonsmooth.checks import require_parameter
+from nonsmooth.checks import as_number, require_parameter
 from nonsmooth.errors import SceneError, quoted
 from nonsmooth.scenes import tuning
 from nonsmooth.scenes.formulas import parse, require_slope, vectorised
@@ -121,6 +121,11 @@ class Langevin:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
+        if as_number(self.potential) is not None:
+            raise SceneError(
+                f"the noise potential is {quoted(self.potential)}; write a formula of eta in "
+                f"quotes, or OrnsteinUhlenbeck(theta={self.potential}, sigma={self.sigma:g})"
+            )
         require_moderate("v", self.potential, self.potential_expression, (eta,))
         require_slope(self.potential, self.potential_expression, eta)
         far = np.array(tuning.FAR_OUT.distances)
@@ -243,4 +248,9 @@ NOISES: dict[str, Noise] = {
     "white": White(),
     "langevin": OrnsteinUhlenbeck(),
     "hamiltonian": KanaiTajimi(),
+}
+# what a scene may call its noise: by its kind, or as engineers do
+NAMES: dict[str, Noise] = NOISES | {
+    "ornstein_uhlenbeck": NOISES["langevin"],
+    "kanai_tajimi": NOISES["hamiltonian"],
 }

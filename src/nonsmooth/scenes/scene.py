@@ -1,5 +1,6 @@
 """A scene: mechanical model + noise + potential + damping + penalization + observable."""
 
+import difflib
 import itertools
 import math
 import warnings
@@ -29,6 +30,8 @@ from nonsmooth.scenes.penalties import n as penalization
 from nonsmooth.scenes.regularity import require_moderate
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x
 
+_FORCES = {model.force_name for model in MODELS.values()}
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -39,8 +42,8 @@ class Scene:
     model : str or Model
         ``"elasto_plastic"``, ``"friction"``, ``"obstacle"``, or a model object.
     noise : str or Noise
-        ``"white"``, ``"langevin"`` (unit Ornstein-Uhlenbeck), ``"hamiltonian"`` (unit
-        Kanai-Tajimi), or a noise object.
+        ``"white"``, ``"ornstein_uhlenbeck"`` or ``"langevin"``, ``"kanai_tajimi"`` or
+        ``"hamiltonian"`` (both of unit parameters), or a noise object.
     n : float
         Penalization, "1"; ``inf`` is the non-smooth limit.
     damping : float
@@ -82,11 +85,17 @@ class Scene:
             self._set("observable", self.mechanics.default_observable)
         self._check_numbers()
         self._check_start()
-        for name in ("potential", "observable"):
+        for name, example in (("potential", "x**2/2"), ("observable", "y")):
             if not isinstance(getattr(self, name), str):
                 raise SceneError(
-                    f"{name} is {quoted(getattr(self, name))}; give a formula as a text"
+                    f"{name} is {quoted(getattr(self, name))}; write a formula in quotes, "
+                    f"such as {example!r}"
                 )
+        if self.observable in _FORCES - {self.mechanics.force_name}:
+            raise SceneError(
+                f"observable is {self.observable!r}, the force of another model; write "
+                f"{self.mechanics.force_name!r}"
+            )
         require_moderate("U", self.potential, self.potential_expression, (x,))
         require_slope(self.potential, self.potential_expression, x)
         unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
@@ -107,14 +116,16 @@ class Scene:
         else:
             self._set("model", require_choice("model", self.model, MODELS))
         if isinstance(self.noise, str):
-            self._set("noise", noises.NOISES[require_choice("noise", self.noise, noises.NOISES)])
-        if not isinstance(self.noise, noises.Noise) or isinstance(self.noise, type):
+            self._set("noise", noises.NAMES[require_choice("noise", self.noise, noises.NAMES)])
+        if isinstance(self.noise, type) or not isinstance(self.noise, noises.Noise):
             raise SceneError(
-                f"noise is {quoted(self.noise)}; choose from {', '.join(noises.NOISES)}, or give a "
-                "noise object"
+                f"noise is {quoted(self.noise)}; choose from {', '.join(noises.NAMES)}, or give a "
+                "noise object such as nonsmooth.White(sigma=0.5)"
             )
 
     def _check_numbers(self):
+        if isinstance(self.n, str) and self.n.lower().startswith("inf"):
+            raise SceneError(f"n is {quoted(self.n)}; write float('inf')")
         rigid = as_number(self.n) == math.inf
         self._set("n", math.inf if rigid else require_positive("n", self.n, *PENALIZATIONS))
         self._set("damping", require_parameter("damping", self.damping))
@@ -395,7 +406,20 @@ def by_formulas(parameters: dict) -> Scene:
 def require_scene(value: object) -> None:
     """Refuse, as the first argument of a public function, what is no scene."""
     if not isinstance(value, Scene):
-        raise SceneError(f"scene is {quoted(value)}; make one by nonsmooth.Scene(...)")
+        raise SceneError(f"scene is {quoted(value)}; write {_meant(value)}")
+
+
+def _meant(value):
+    """Guess which scene somebody has in mind who gave something else."""
+    match value:
+        case str():
+            near = difflib.get_close_matches(value.lower(), MODELS, n=1)
+            return f"nonsmooth.Scene({(near or ['friction'])[0]!r})"
+        case Mapping():
+            return "nonsmooth.Scene(**scene)"
+        case Model():
+            return "nonsmooth.Scene(model)"
+    return "nonsmooth.Scene('friction'), for example"
 
 
 def require_random(scene: object) -> None:

@@ -142,3 +142,36 @@ def test_warns_where_g_is_above_the_lyapunov_function(observable, warned):
             warnings.simplefilter("always")
             ns.Scene("friction", potential=U, observable=g)
         assert bool(caught) == expected
+
+
+@pytest.mark.parametrize(
+    ("mistake", "cure"),
+    [
+        (lambda: ns.Langevin(3, 2.5), r"OrnsteinUhlenbeck\(theta=3, sigma=2.5\)"),
+        (lambda: ns.Langevin(lambda eta: eta), "in quotes"),
+        (lambda: ns.Scene("friction", potential="x^2/2"), r"write 'x\*\*2/2'"),
+        (lambda: ns.Scene("friction", potential="x²/2"), r"write 'x\*\*2/2'"),
+        (lambda: ns.Scene("friction", potential=2), r"in quotes, such as 'x\*\*2/2'"),
+        (lambda: ns.Scene("friction", observable="velocity"), "write y$"),
+        (lambda: ns.Scene("friction", observable="Displacement"), "write x$"),
+        (lambda: ns.Scene("friction", observable="np.sin(y)"), "write sin$"),
+        (lambda: ns.Scene("friction", observable="math.pi*y"), "write pi$"),
+        (lambda: ns.Scene("friction", observable="ln(abs(y) + 1)"), "write log$"),
+        (lambda: ns.Scene("friction", observable="contact_force"), "write 'friction_force'"),
+        (lambda: ns.Scene("friction", observable=0), "in quotes, such as 'y'"),
+        (lambda: ns.Scene("friction", n="inf"), r"write float\('inf'\)"),
+        (lambda: ns.Scene("friction", "kanai-tajimi"), "did you mean 'kanai_tajimi'"),
+        (lambda: ns.Scene("friction", ns.White), r"nonsmooth.White\(sigma=0.5\)"),
+    ],
+)
+def test_a_mistake_is_told_what_to_write(mistake, cure):
+    """One line, which ends with what was meant."""
+    with pytest.raises(NonsmoothError, match=cure) as told:
+        mistake()
+    assert "\n" not in str(told.value)
+
+
+def test_noises_have_their_names_in_engineering():
+    """They stand for the same objects, so that scenes and their streams are the same."""
+    for name, kind in (("ornstein_uhlenbeck", "langevin"), ("kanai_tajimi", "hamiltonian")):
+        assert ns.Scene("friction", name) == ns.Scene("friction", kind)
