@@ -76,6 +76,12 @@ for job in workflow.rules:
     complete(job)
 
 
+onstart:
+    # There is no limit of jobs per second. With one, snakemake looks at all that waits once more a
+    # second after each look, which every finished job adds to: it would take half a core.
+    workflow.scheduler.job_rate_limiter = None
+
+
 onerror:
     for line in hints(log):
         print(line, file=sys.stderr)
