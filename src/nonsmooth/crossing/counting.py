@@ -5,7 +5,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from nonsmooth.paths.ensembles import coupled, require_finite
-from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
+from nonsmooth.paths.kernels.panel import TOTAL_DELTA, extremes, new_panel
 from nonsmooth.paths.moments import bias_over_change
 from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
@@ -13,7 +13,7 @@ from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.paths.time_loop import compile_march, march
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.scenes.thresholds import bounds
+from nonsmooth.scenes.thresholds import bounds, intervals
 
 DESCRIPTIONS = {
     "probability": "probability of crossing sqrt(p) b by p T",
@@ -25,20 +25,21 @@ DESCRIPTIONS = {
 
 def first_passage_counts(
     scene: Scene,
-    threshold: float | tuple[float, float],
+    threshold: ArrayLike,
     horizons: ArrayLike,
     p: float,
     sampling: Sampling,
 ) -> np.ndarray:
     """Count the paths that cross sqrt(p) times the threshold between the horizons p T.
 
-    A path is dropped once it has crossed.
+    A path is dropped once it has crossed all thresholds.
 
     Parameters
     ----------
     scene : Scene
-    threshold : float or (float, float)
-        b or its lower and upper level, "1".
+    threshold : float, (float, float) or array_like
+        b or its lower and upper level, or several of them, see `thresholds.intervals`, "1". All
+        are counted on the same paths.
     horizons : array_like, shape (k,)
         Increasing T > 0, "1".
     p : float
@@ -49,13 +50,18 @@ def first_passage_counts(
     Returns
     -------
     numpy.ndarray of int, shape (k,)
+        Or (m, k) for m thresholds in a list.
 
     Raises
     ------
     SceneError
         If a parameter is out of range or a path diverges.
     """
-    levels = np.sqrt(p) * np.array(bounds(threshold))
+    thresholds, several = intervals(threshold)
+    levels = np.sqrt(p) * thresholds
+    symmetric = bool(np.all(levels[:, 0] == -levels[:, 1]))
+    outermost = _outermost(levels, symmetric)
+    lower, upper = levels.T[:, :, None]
     grid = [
         (steps, registry.coefficients(scene, sampling.scheme, h, sampling.precision))
         for steps, h in equal_steps(p * np.asarray(horizons, dtype=float), sampling.step)
@@ -65,14 +71,26 @@ def first_passage_counts(
     def run(job):
         block, lanes = job
         panel = new_panel(scene, sampling.seed, block, sampling.precision)
-        left = [lanes]
+        left, inside = lanes, [np.full(len(levels), lanes)]
         for steps, s in grid:
-            left.append(march(s, panel, left[-1], steps, *levels))
+            left = march(s, panel, left, steps, *outermost)
+            low, high = extremes(panel, left, symmetric)
+            inside.append(np.sum((low > lower) & (high < upper), axis=1))
         # A path that diverges never crosses.
-        require_finite(panel.total[TOTAL_DELTA, : left[-1]])
-        return -np.diff(left)
+        require_finite(panel.total[TOTAL_DELTA, :left])
+        return -np.diff(inside, axis=0).T
 
-    return np.asarray(sum(parallel(run, sampling, sum(steps for steps, _ in grid))))
+    counts = np.asarray(sum(parallel(run, sampling, sum(steps for steps, _ in grid))))
+    return counts if several else counts[0]
+
+
+def _outermost(levels, symmetric):
+    """Return levels beyond which a path has left all intervals."""
+    lower, upper = levels[:, 0].min(), levels[:, 1].max()
+    if not symmetric and lower == -upper:
+        # the time loop takes opposite levels as the sign that max |int g| is enough
+        upper = min(np.nextafter(upper, np.inf), np.finfo(float).max)
+    return lower, upper
 
 
 def first_passage_bias(
@@ -141,14 +159,18 @@ def bias_of_counts(
     ----------
     scene : Scene
     times : numpy.ndarray, shape (k,)
-    passage : numpy.ndarray, shape (2, paths)
-        First-passage times with half the step and with the step, from `coupled`.
+    passage : numpy.ndarray, shape (2, paths) or (m, 2, paths)
+        First-passage times with half the step and with the step, from `coupled`; those of several
+        thresholds, from `coupled_crossings`.
 
     Returns
     -------
-    bias, error : numpy.ndarray, shape (k,)
+    bias, error : numpy.ndarray, shape (k,) or (m, k)
         Of the fraction with the longer step, with its standard error.
     """
+    if passage.ndim == 3:
+        found = [bias_of_counts(scene, times, own) for own in passage]
+        return np.array([bias for bias, _ in found]), np.array([error for _, error in found])
     fine, coarse = passage
     paths = len(fine)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)

@@ -14,7 +14,7 @@ from nonsmooth.crossing.counting import (
     proportion,
 )
 from nonsmooth.errors import ToleranceError
-from nonsmooth.paths.ensembles import coupled
+from nonsmooth.paths.ensembles import coupled, coupled_crossings
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
 from nonsmooth.paths.moments import step_bias, variance_of_fine
 from nonsmooth.paths.resolution import (
@@ -52,7 +52,7 @@ def least_steps(scene: Scene, time: float, tol: float) -> tuple[float, float]:
 
 def sampled_crossing(
     scene: Scene,
-    threshold: tuple[float, float],
+    thresholds: np.ndarray,
     horizons: np.ndarray,
     p: float,
     seed: int | tuple,
@@ -68,19 +68,22 @@ def sampled_crossing(
     A pilot runs a few paths with a coarse step and its half. If hardly any of them cross, or nearly
     all, the pilot may be the answer. Otherwise its confidence limits tell how many paths are
     needed, and its bias, extrapolated by the weak order, tells the step. The bias is then measured
-    anew, and the step is refined if the bias takes more than its part of the tolerance.
+    anew, and the step is refined if the bias takes more than its part of the tolerance. One set of
+    paths serves all thresholds; the one that needs most paths and the shortest step decides.
 
     Parameters
     ----------
-    scene, threshold, horizons, p, seed, threads, tol, step, paths, precision
-        As for `crossing_probability`, the threshold as a pair.
+    scene, horizons, p, seed, threads, tol, step, paths, precision
+        As for `crossing_probability`.
+    thresholds : numpy.ndarray, shape (m, 2)
+        Lower and upper levels.
     most : float
         Largest number of steps of all paths. If more are needed, this raises an error instead.
 
     Returns
     -------
     values : dict
-        What `crossing_probability` describes.
+        What `crossing_probability` describes, arrays of the shape (m, k).
     attributes : dict
         `step`, `paths`.
 
@@ -93,7 +96,7 @@ def sampled_crossing(
         bias.
     """
     request = _Request(
-        scene, threshold, horizons, p, seed, threads, tol, step, paths, precision, most
+        scene, thresholds, horizons, p, seed, threads, tol, step, paths, precision, most
     )
     if step is not None and paths is not None:
         return request.answer(_Plan(step, paths, MONTE_CARLO.pilot_paths))
@@ -105,7 +108,10 @@ def sampled_crossing(
 
 @dataclass(frozen=True)
 class _Halving:
-    """Paths with a step and with half of it on the same noise, see `coupled`."""
+    """Paths with a step and with half of it on the same noise, see `coupled`.
+
+    `passage` has the shape (m, 2, paths).
+    """
 
     step: float
     paths: int
@@ -114,7 +120,7 @@ class _Halving:
 
     def crossed(self, times):
         """Count the paths that have crossed with half the step."""
-        return np.sum(self.passage[0][:, None] <= times, axis=0)
+        return np.array([np.sum(fine[:, None] <= times, axis=0) for fine, _ in self.passage])
 
     def require_resolved(self, order):
         """Refuse a step at which halving does not measure the bias."""
@@ -149,7 +155,7 @@ class _Request:
     """What `sampled_crossing` is asked for; a step or paths that are None are to be chosen."""
 
     scene: Scene
-    threshold: tuple[float, float]
+    thresholds: np.ndarray
     horizons: np.ndarray
     p: float
     seed: int | tuple
@@ -233,20 +239,21 @@ class _Request:
                 return _outcome(crossed, paths, step, bias, error)
             step = refined_step(step, np.max(np.abs(bias) + error), self.allowed_bias, self.order)
         raise ToleranceError(
-            f"W = {crossed[-1] / paths:.3g} has a bias of {np.max(np.abs(bias)):.1e} by the step "
-            f"{check.step:.1e}, which does not fall by the weak order; choose a step or loosen tol",
+            f"W = {crossed.flat[-1] / paths:.3g} has a bias of {np.max(np.abs(bias)):.1e} by the "
+            f"step {check.step:.1e}, which does not fall by the weak order; choose a step or "
+            "loosen tol",
             _outcome(crossed, paths, check.step, bias, error),
         )
 
     def counted(self, step, wanted, pilot):
         """Count paths until there are enough; return how many crossed, and how many there were."""
-        crossed, done = np.zeros(len(self.horizons), dtype=int), 0
+        crossed, done = np.zeros((len(self.thresholds), len(self.horizons)), dtype=int), 0
         while done < wanted:
             more = Sampling(
                 step, wanted - done, self.seed, done, self.threads, precision=self.precision
             )
-            counts = first_passage_counts(self.scene, self.threshold, self.horizons, self.p, more)
-            crossed = crossed + np.cumsum(counts)
+            counts = first_passage_counts(self.scene, self.thresholds, self.horizons, self.p, more)
+            crossed = crossed + np.cumsum(counts, axis=1)
             done = wanted
             allowed = MONTE_CARLO.spread_share * self.tol
             if self.paths is None and _distance(crossed, done) > allowed:
@@ -258,12 +265,17 @@ class _Request:
         """Run paths with a step and its half, on a noise of their own."""
         own = labelled(self.seed, label)
         sampling = Sampling(step, paths, own, threads=self.threads, precision=self.precision)
-        levels = np.sqrt(self.p) * np.array(self.threshold)
-        return _Halving(step, paths, *coupled(self.scene, self.times, sampling, levels))
+        levels = np.sqrt(self.p) * self.thresholds
+        if len(levels) > 1:
+            change, passage = coupled_crossings(self.scene, self.times, sampling, levels)
+        else:  # passage times that are interpolated within a step, in fewer calls
+            change, passage = coupled(self.scene, self.times, sampling, tuple(levels[0]))
+            passage = passage[None]
+        return _Halving(step, paths, change, passage)
 
     def require_possible(self, paths, step, crossed, count, pilot):
         """Refuse too many steps; the message has the estimate from the first `count` paths."""
-        W, error = crossed[-1] / count, MONTE_CARLO.sigmas / 2 / np.sqrt(count)
+        W, error = crossed.flat[-1] / count, MONTE_CARLO.sigmas / 2 / np.sqrt(count)
         told = f"W = {W:.3g} has an error of {error:.1g}"
         work = tuning.COUNTING.checked * paths
         known = self.outcome_of_pilot(pilot)

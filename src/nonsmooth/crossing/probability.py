@@ -1,6 +1,7 @@
 """Threshold crossing probabilities W_g(b, T) = P(max_{t <= T} |int_0^t g| >= b).
 
-A threshold is a number b, for both sides, or a pair (lower, upper): see `thresholds.bounds`.
+A threshold is a number b, for both sides, or a pair (lower, upper); there may be several: see
+`thresholds.intervals`.
 `docs/methods/crossing.md` describes the methods and the choice among them.
 """
 
@@ -32,14 +33,16 @@ from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer,
 from nonsmooth.paths.sampling import PRECISIONS
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene, require_random
-from nonsmooth.scenes.thresholds import bounds
+from nonsmooth.scenes.thresholds import intervals
 from nonsmooth.statistics.asymptotic_variance import limit_variance
 from nonsmooth.statistics.mean import mean
+
+LEVELS = "threshold_lower", "threshold_upper"  # coordinates of several thresholds
 
 
 def crossing_probability(
     scene: Scene,
-    threshold: float | tuple[float, float],
+    threshold: ArrayLike,
     horizons: ArrayLike,
     p: float = 1.0,
     method: str | None = None,
@@ -56,9 +59,11 @@ def crossing_probability(
     Parameters
     ----------
     scene : Scene
-    threshold : float or (float, float)
+    threshold : float, (float, float) or array_like
         b > 0: the interval is (-sqrt(p) b, sqrt(p) b). Or lower < 0 < upper, one of which may be
-        infinite: it is (sqrt(p) lower, sqrt(p) upper). "1".
+        infinite: it is (sqrt(p) lower, sqrt(p) upper). Or several: numbers b in a list or an array
+        of one dimension, or pairs in an array of the shape (m, 2). (A tuple of two numbers is a
+        pair, and so is a list whose first number is negative.) "1".
     horizons : array_like, shape (k,)
         Increasing T > 0, "1".
     p : float
@@ -103,7 +108,9 @@ def crossing_probability(
         Over `horizon`, with the method among its attributes: `probability`, and its distance
         `probability_error` to the probability asked for, that of this scene at this p. All that
         the method does not know is part of it. The probability asked for is between `lower` and
-        `upper`.
+        `upper`. Several thresholds are a dimension `threshold` before it, with the coordinates
+        `threshold_lower` and `threshold_upper` and, if all are numbers b, these as `threshold`. One
+        method serves all of them, and by Monte Carlo the same paths.
 
         - ``"deterministic"``: the error is estimated from two resolutions. The complement of the
           probability is `survival` with `survival_error`, for one variable to relative accuracy.
@@ -126,17 +133,20 @@ def crossing_probability(
         halving it does not measure its bias.
     """
     require_random(scene)
-    threshold = bounds(threshold)
+    thresholds, several = intervals(threshold)
     horizons = require_increasing("horizons", horizons)
     p = require_positive("p", p)
     method = None if method is None else require_choice("method", method, METHODS)
     seed, threads = require_seed(seed), require_threads(threads)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
     given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
-    attempts = _attempts(scene, horizons, p, given) if method is None else [(method, {})]
+    attempts = (
+        _attempts(scene, horizons, p, given, len(thresholds)) if method is None else [(method, {})]
+    )
 
     def attempt(name, limits):
-        solve = partial(_by(name, given), scene, threshold, horizons, p, seed=seed, threads=threads)
+        method = _by(name, given)
+        solve = partial(method, scene, thresholds, horizons, p, seed=seed, threads=threads)
         return answered(lambda: solve(**given, **limits), lambda found: (name, *found))
 
     def solve():
@@ -151,13 +161,22 @@ def crossing_probability(
         value, error = values["probability"], values["probability_error"]
         limits = {"lower": np.maximum(value - error, 0), "upper": np.minimum(value + error, 1)}
         values = limits | values
-        return xr.Dataset(
-            {name: ("horizon", value) for name, value in values.items()},
-            coords={"horizon": horizons},
+        dimensions = ("threshold", "horizon")
+        result = xr.Dataset(
+            {name: (dimensions, value) for name, value in values.items()},
+            coords=_coordinates(thresholds) | {"horizon": horizons},
             attrs={"method": name} | attributes,
         )
+        return result if several else result.isel(threshold=0, drop=True)
 
     return answered(solve, present, tol_given=tol is not None)
+
+
+def _coordinates(thresholds):
+    """Return the coordinates of a dimension of thresholds."""
+    lower, upper = thresholds.T
+    levels = dict(zip(LEVELS, ((("threshold",), side) for side in (lower, upper)), strict=True))
+    return levels | ({"threshold": upper} if np.all(lower == -upper) else {})
 
 
 def _by(method, given):
@@ -168,7 +187,7 @@ def _by(method, given):
     return METHODS[method]
 
 
-def _attempts(scene, horizons, p, given):
+def _attempts(scene, horizons, p, given, thresholds):
     """Choose the methods to try in turn, each with its limits.
 
     Monte Carlo comes before a solver if it may be faster. Its pilot tells how many paths are
@@ -196,14 +215,16 @@ def _attempts(scene, horizons, p, given):
         fast = pilot <= choice.pilot_share * most and least <= most
         return [("monte_carlo", {"most": most})] if fast else []
 
-    attempts = sampled(windows * choice.seconds_solved[scene.dimension - 1]) + attempts
+    solves = windows * (1 + choice.one_more * (thresholds - 1))
+    attempts = sampled(solves * choice.seconds_solved[scene.dimension - 1]) + attempts
     covered = scene.is_line and scene.is_odd() and not scene.grows_too_fast
     if covered and tol * p**2 >= choice.least_corrected:
-        attempts = [*sampled(choice.seconds_corrected), ("corrected", {"order": 3}), *attempts]
+        seconds = choice.seconds_corrected * thresholds
+        attempts = [*sampled(seconds), ("corrected", {"order": 3}), *attempts]
     return attempts
 
 
-def _asymptotic(scene, threshold, horizons, p, seed, threads):
+def _asymptotic(scene, thresholds, horizons, p, seed, threads):
     """Evaluate W_star(b / gamma, T), which does not depend on p; the error does.
 
     It is the distance to the corrected formula of the highest order, and the error of that.
@@ -216,17 +237,21 @@ def _asymptotic(scene, threshold, horizons, p, seed, threads):
         )
     gamma2 = limit_variance(scene, seed, threads)
     _require_centred(scene, gamma2, mean(scene, seed=seed, threads=threads))
-    value, own = asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error)
-    error = np.maximum(value, 1 - value)  # all that is known of a probability
-    if highest_order(scene) > 1 or scene.is_odd():
-        rough = None if scene.is_line else tuning.LIMIT_ERROR.kappa * np.sqrt(gamma2.value)
-        order = highest_order(scene)
-        with suppress(ToleranceError):  # kappa out of reach
-            nearer, rest = corrected_crossing(
-                scene, threshold, horizons, p, order, None, seed, threads, rough
-            )
-            error = np.minimum(np.abs(value - nearer) + rest + own, error)
-    return {"probability": value, "probability_error": error, "limit_error": own}, {}
+
+    def one(threshold):
+        value, own = asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error)
+        error = np.maximum(value, 1 - value)  # all that is known of a probability
+        if highest_order(scene) > 1 or scene.is_odd():
+            rough = None if scene.is_line else tuning.LIMIT_ERROR.kappa * np.sqrt(gamma2.value)
+            order = highest_order(scene)
+            with suppress(ToleranceError):  # kappa out of reach
+                nearer, rest = corrected_crossing(
+                    scene, threshold, horizons, p, order, None, seed, threads, rough
+                )
+                error = np.minimum(np.abs(value - nearer) + rest + own, error)
+        return {"probability": value, "probability_error": error, "limit_error": own}
+
+    return _each(one, thresholds)
 
 
 def _require_centred(scene, gamma2, found):
@@ -241,21 +266,42 @@ def _require_centred(scene, gamma2, found):
         )
 
 
-def _deterministic(scene, threshold, horizons, p, seed, threads, tol=None):
-    lower, upper = np.sqrt(p) * np.array(threshold)
-    return answered(lambda: deterministic_crossing(scene, lower, upper, p * horizons, tol), _values)
-
-
-def _corrected(scene, threshold, horizons, p, seed, threads, order=1, tol=None):
-    return answered(
-        lambda: corrected_crossing(scene, threshold, horizons, p, order, tol, seed, threads),
-        lambda found: _values({"probability": found[0], "probability_error": found[1]}),
+def _deterministic(scene, thresholds, horizons, p, seed, threads, tol=None):
+    times, scale = p * horizons, np.sqrt(p)
+    return _each(
+        lambda pair: deterministic_crossing(scene, *(scale * np.array(pair)), times, tol),
+        thresholds,
     )
 
 
-def _values(found):
-    """Return what a method returns that has no attributes."""
-    return found, {}
+def _corrected(scene, thresholds, horizons, p, seed, threads, order=1, tol=None):
+    def one(threshold):
+        return answered(
+            lambda: corrected_crossing(scene, threshold, horizons, p, order, tol, seed, threads),
+            lambda found: {"probability": found[0], "probability_error": found[1]},
+        )
+
+    return _each(one, thresholds)
+
+
+def _each(solve, thresholds):
+    """Solve for one threshold after the other; the answer of a method that has no attributes.
+
+    If some miss the tolerance, the error is that of the first, with all answers as its result.
+    """
+    found, missed = [], []
+    for threshold in thresholds:
+        try:
+            found.append(solve(tuple(threshold)))
+        except ToleranceError as refused:
+            if refused.result is None:
+                raise
+            found.append(refused.result)
+            missed.append(refused)
+    values = {name: np.array([own[name] for own in found]) for name in found[0]}
+    if missed:
+        raise ToleranceError(str(missed[0]), (values, {}))
+    return values, {}
 
 
 # checks of the parameters that only some methods have
@@ -267,9 +313,9 @@ _OPTIONS: dict[str, Callable] = {
     "order": lambda order: require_count("order", order, 3),
 }
 
-# Each takes (scene, threshold, horizons, p, seed, threads), the threshold as a pair, and those of
-# the other parameters of `crossing_probability` that it has. It returns a dict of the variables
-# over the horizons and a dict of attributes.
+# Each takes (scene, thresholds, horizons, p, seed, threads), the thresholds as pairs, shape (m, 2),
+# and those of the other parameters of `crossing_probability` that it has. It returns a dict of the
+# variables over thresholds and horizons and a dict of attributes.
 METHODS: dict[str, Callable] = {
     "monte_carlo": sampled_crossing,
     "deterministic": _deterministic,

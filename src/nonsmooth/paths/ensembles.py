@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.control_variate import poisson_slope
 from nonsmooth.paths.cost import require_memory
-from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, new_panel
+from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, extremes, new_panel
 from nonsmooth.paths.parallel import kept_at_once, parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
@@ -211,20 +211,11 @@ def coupled(
     passage : numpy.ndarray, shape (2, paths)
         First-passage times with step h/2 and h, inf if there is none.
     """
-    scheme, precision = sampling.scheme, sampling.precision
-    grid = equal_steps(times, sampling.step)
-    pairs = {
-        h: (
-            registry.coefficients(scene, scheme, h / 2, precision),
-            registry.on_given_increments(registry.coefficients(scene, scheme, h, precision)),
-        )
-        for h in {h for _, h in grid}
-    }
-    compile_march_pair(*pairs[grid[0][1]], new_panel(scene, sampling.seed, 0, precision))
+    grid, pairs = _pairs(scene, times, sampling)
 
     def run(job):
         block, count = job
-        panel, other = (new_panel(scene, sampling.seed, block, precision) for _ in range(2))
+        panel, other = (_new_panel(scene, sampling, block) for _ in range(2))
         passage = np.full((2, count), np.inf)
         sums, first, began = np.zeros((len(grid), 4, 4)), 0, 0.0
         for (steps, h), alike in groupby(grid):
@@ -236,12 +227,77 @@ def coupled(
         return sums, passage
 
     require_memory(4 * sampling.paths)
+    return _gathered(run, grid, sampling)
+
+
+def coupled_crossings(
+    scene: Scene, times: ArrayLike, sampling: Sampling, intervals: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Simulate paths as `coupled` does and note by which output times they leave intervals.
+
+    Parameters
+    ----------
+    scene, times, sampling
+        As for `coupled`.
+    intervals : numpy.ndarray, shape (m, 2)
+        Lower and upper levels.
+
+    Returns
+    -------
+    change : numpy.ndarray, shape (t, 4, 4)
+        As from `coupled`.
+    passage : numpy.ndarray, shape (m, 2, paths)
+        First output times by which D has reached one of the levels, with step h/2 and h; inf if
+        there is none.
+    """
+    grid, pairs = _pairs(scene, times, sampling)
+    lower, upper = intervals.T[:, :, None]
+
+    def run(job):
+        block, count = job
+        panels = [_new_panel(scene, sampling, block) for _ in range(2)]
+        passage, untimed = np.full((2, len(intervals), count), np.inf), np.full((2, count), np.inf)
+        sums, began = np.zeros((len(grid), 4, 4)), 0.0
+        for time, (steps, h), own in zip(np.asarray(times), grid, sums, strict=True):
+            both = (*pairs[h], *panels, count, steps, EVERYWHERE)
+            march_pair_and_sum(*both, began, steps * h, untimed, own[None])
+            began += steps * h
+            for panel, found in zip(panels, passage, strict=True):
+                low, high = extremes(panel, count, symmetric=False)
+                found[np.isinf(found) & ((low <= lower) | (high >= upper))] = time
+        return sums, passage.swapaxes(0, 1)
+
+    require_memory(4 * len(intervals) * sampling.paths)
+    return _gathered(run, grid, sampling)
+
+
+def _pairs(scene, times, sampling):
+    """Return the grid of times, and for each step on it the coefficients of its half and of it."""
+    scheme, precision = sampling.scheme, sampling.precision
+    grid = equal_steps(times, sampling.step)
+    pairs = {
+        h: (
+            registry.coefficients(scene, scheme, h / 2, precision),
+            registry.on_given_increments(registry.coefficients(scene, scheme, h, precision)),
+        )
+        for h in {h for _, h in grid}
+    }
+    compile_march_pair(*pairs[grid[0][1]], _new_panel(scene, sampling, 0))
+    return grid, pairs
+
+
+def _new_panel(scene, sampling, block):
+    return new_panel(scene, sampling.seed, block, sampling.precision)
+
+
+def _gathered(run, grid, sampling):
+    """Run the blocks of coupled paths; add up their changes and join their passages."""
     total, passages = np.zeros((len(grid), 4, 4)), []
     for change, passage in parallel(run, sampling, 3 * sum(steps for steps, _ in grid)):
         require_finite(change)
         total += change
         passages.append(passage)
-    return total, np.hstack(passages)
+    return total, np.concatenate(passages, axis=-1)
 
 
 def require_finite(result: np.ndarray) -> None:

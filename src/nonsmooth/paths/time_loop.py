@@ -21,6 +21,8 @@ from nonsmooth.paths.kernels.panel import (
     BEFORE,
     DELTA,
     FLUSH,
+    HIGH,
+    LOW,
     ROWS,
     TOTAL_DELTA,
     TOTAL_MARTINGALE,
@@ -33,7 +35,7 @@ from nonsmooth.paths.kernels.panel import (
     retire,
 )
 from nonsmooth.paths.kernels.random_numbers import normals
-from nonsmooth.paths.kernels.vector_math import fma, like
+from nonsmooth.paths.kernels.vector_math import fma, larger, like, smaller
 from nonsmooth.paths.parallel import count
 from nonsmooth.paths.schemes import registry
 
@@ -380,9 +382,11 @@ def compile_march_pair(fine: Any, coarse: Any, panel: Panel) -> None:
 
 @inlined
 def _note_passage(data, passage, lanes, lower, upper, now, step):
-    """Record the paths that have reached one of the levels within a step."""
+    """Record the paths that have reached one of the levels within a step, and their extremes."""
     for i in range(lanes):
         before, after = data[BEFORE, i], data[BASE, i] + data[DELTA, i]
+        data[LOW, i] = smaller(data[LOW, i], after)
+        data[HIGH, i] = larger(data[HIGH, i], after)
         if (after >= upper or after <= lower) and passage[i] == np.inf:
             level = upper if after >= upper else lower
             passage[i] = now + step * (level - before) / (after - before)

@@ -5,7 +5,7 @@ import pytest
 from scipy import special
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from references import FRICTION, GAMMA2, W_STAR
 
 HORIZONS = np.linspace(0, 2, 11)[1:]
@@ -132,3 +132,58 @@ def test_formula_refuses_an_observable_that_is_not_centred():
 def test_method_follows_from_what_is_given(scene, given, method):
     """A tolerance, a number of paths or an order decides; the result names the method."""
     assert ns.crossing_probability(scene, 0.6, [1.0], **given).attrs["method"] == method
+
+
+SEVERAL = (
+    [0.3, 0.6, 1.2],
+    np.array([(-0.3, 0.3), (-0.5, 0.7), (-0.7, 0.7)]),
+    [(-0.3, np.inf), (-np.inf, 0.7)],
+)
+
+
+@pytest.mark.parametrize("thresholds", SEVERAL)
+@pytest.mark.parametrize("method", ["monte_carlo", "deterministic", "corrected", "asymptotic"])
+def test_each_row_of_several_thresholds_is_that_threshold(thresholds, method):
+    """To the bit, by Monte Carlo on the same paths; opposite one-sided levels included."""
+    sampled = {"step": 0.05, "paths": 3_000} if method == "monte_carlo" else {}
+    asked = {"horizons": [0.5, 2.0], "p": 2.0, "method": method} | sampled
+    run = ns.crossing_probability(FRICTION, thresholds, **asked)
+    assert dict(run.sizes) == {"threshold": len(thresholds), "horizon": 2}
+    for row, threshold in enumerate(thresholds):
+        one = ns.crossing_probability(FRICTION, threshold, **asked)
+        for name in ("probability", "probability_error"):
+            assert np.array_equal(run[name][row], one[name])
+
+
+def test_coordinates_of_several_thresholds():
+    """Numbers b are coordinates themselves; every interval has its lower and its upper level."""
+    asked = {"horizons": [1.0], "method": "asymptotic"}
+    numbers = ns.crossing_probability(FRICTION, [1.2, 0.3], **asked)
+    assert numbers["threshold"].values.tolist() == [1.2, 0.3]
+    assert float(numbers["probability"].sel(threshold=1.2, horizon=1.0)) < 0.01
+    pairs = ns.crossing_probability(FRICTION, [(-0.3, 0.5), (-1.0, np.inf)], **asked)
+    assert "threshold" not in pairs.coords
+    for name, side in (("threshold_lower", [-0.3, -1.0]), ("threshold_upper", [0.5, np.inf])):
+        assert pairs[name].values.tolist() == side
+
+
+def test_one_set_of_paths_serves_all_thresholds_within_the_tolerance():
+    """|error| <= tol for 30 thresholds and all horizons; a false alarm in 100 runs.
+
+    The 30 need no more paths than the worst of them, that with W nearest to 1/2.
+    """
+    thresholds = np.linspace(0.1, 1.6, 30)
+    asked = {"horizons": HORIZONS, "p": 10.0}
+    run = ns.crossing_probability(FRICTION, thresholds, **asked, tol=0.01, method="monte_carlo")
+    limit = ns.crossing_probability(FRICTION, thresholds, **asked, method="corrected", order=3)
+    distance = np.abs(run["probability"] - limit["probability"])
+    assert np.all(distance <= 0.01 + limit["probability_error"])
+    assert run.attrs["paths"] <= 41_000
+
+
+def test_what_misses_its_tolerance_is_told_with_all_thresholds():
+    """The error of one threshold is raised; its result has them all."""
+    asked = {"horizons": [2.0], "method": "corrected", "tol": 1e-3, "order": 3}
+    with pytest.raises(ToleranceError, match=r"above tol = 0\.001") as refused:
+        ns.crossing_probability(FRICTION, [0.05, 5.0], **asked)
+    assert dict(refused.value.result.sizes) == {"threshold": 2, "horizon": 1}

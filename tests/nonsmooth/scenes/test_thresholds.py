@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nonsmooth.errors import SceneError
-from nonsmooth.scenes.thresholds import bounds
+from nonsmooth.scenes.thresholds import bounds, intervals
 
 
 @pytest.mark.parametrize(
@@ -43,3 +43,40 @@ def test_what_nothing_can_cross_is_refused(threshold, cure):
     """The error is one line with the cure."""
     with pytest.raises(SceneError, match=cure):
         bounds(threshold)
+
+
+@pytest.mark.parametrize(
+    ("threshold", "levels", "several"),
+    [
+        (0.6, [(-0.6, 0.6)], False),
+        ([-0.5, 0.6], [(-0.5, 0.6)], False),
+        (np.array([-np.inf, 0.6]), [(-np.inf, 0.6)], False),
+        ([0.5, 0.6], [(-0.5, 0.5), (-0.6, 0.6)], True),
+        ([0.5], [(-0.5, 0.5)], True),
+        (np.array([0.1, 0.2, 0.3]), [(-0.1, 0.1), (-0.2, 0.2), (-0.3, 0.3)], True),
+        ([(-0.5, np.inf), (-0.1, 0.2)], [(-0.5, np.inf), (-0.1, 0.2)], True),
+        ([[-0.5, 0.6]], [(-0.5, 0.6)], True),
+    ],
+)
+def test_one_threshold_or_several(threshold, levels, several):
+    """Two numbers are one pair if the first is negative, and two thresholds otherwise."""
+    found, many = intervals(threshold)
+    assert list(map(tuple, found)) == levels
+    assert many is several
+
+
+@pytest.mark.parametrize(
+    ("threshold", "cure"),
+    [
+        ((0.5, 0.6), "lower < 0 < upper"),
+        ([0.5, -0.6], "threshold > 0"),
+        ([], r"shape \(m, 2\)"),
+        (np.ones((2, 3)), r"shape \(m, 2\)"),
+        ([(-1.0, 1.0), (-np.inf, np.inf)], "finite level"),
+        ([(-1.0, 1.0), (0.5, 1.0)], "lower < 0 < upper"),
+    ],
+)
+def test_each_of_several_thresholds_is_examined(threshold, cure):
+    """A tuple of two numbers is a pair, never two thresholds."""
+    with pytest.raises(SceneError, match=cure):
+        intervals(threshold)

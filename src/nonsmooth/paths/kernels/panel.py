@@ -79,6 +79,24 @@ def _aligned(rows, kind):
     return memory[first : first + size].view(kind).reshape(rows, WIDTH)
 
 
+def extremes(panel: Panel, lanes: int, symmetric: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return the smallest and the largest int g of the first lanes so far, in double precision.
+
+    Parameters
+    ----------
+    panel : Panel
+    lanes : int
+    symmetric : bool
+        Whether only max |int g| was kept, and -max |int g| stands for the smallest.
+
+    Returns
+    -------
+    low, high : numpy.ndarray, shape (lanes,)
+    """
+    low, high, peak = panel.data[[LOW, HIGH, PEAK], :lanes].astype(float)
+    return (-peak, peak) if symmetric else (low, high)
+
+
 @inlined
 def observe(data, lanes):
     """Add the step's gain to int g and keep track of its largest absolute value."""
