@@ -14,6 +14,7 @@ What is studied: `Scene`, with the noises `White`, `Langevin`, `Hamiltonian`, `O
 - `simulate`: paths, or the moments of the integral
 - `crossing_probability`: of a threshold by the integral; `extrapolation_length`: kappa, by which
   the threshold appears farther away
+- `state_crossing_probability`: of a threshold by the displacement or the velocity themselves
 - `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`: the limit, in which
   the integral is a Brownian motion
 

@@ -189,7 +189,7 @@ class _Request:
     def answer_of_pilot(self, pilot):
         """Return values with half the step of the pilot, or None if they are too inaccurate."""
         bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
-        off = _distance(pilot.crossed(self.times), pilot.paths)
+        off = distance(pilot.crossed(self.times), pilot.paths)
         off += 2**-self.order * np.max(np.abs(bias) + error)
         return self.outcome_of_pilot(pilot) if off <= self.tol else None
 
@@ -200,14 +200,14 @@ class _Request:
         bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
         half = 2**-self.order
         crossed = pilot.crossed(self.times)
-        return _outcome(crossed, pilot.paths, pilot.step / 2, half * bias, half * error)
+        return outcome(crossed, pilot.paths, pilot.step / 2, half * bias, half * error)
 
     def plan(self, pilot):
         """Choose from a pilot what is not given: the step, or the number of paths, or both."""
         paths, step = self.paths, self.step
         crossed, fewest = pilot.crossed(self.times), pilot.paths
         if self.paths is None:
-            paths = _paths_wanted(crossed, fewest, self.tol)
+            paths = paths_wanted(crossed, fewest, self.tol)
             self.require_possible(paths, pilot.step, crossed, fewest, pilot)
         if self.step is None:
             bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
@@ -236,13 +236,13 @@ class _Request:
             bias, error = bias_of_counts(self.scene, self.times, check.passage)
             known = np.max(np.abs(bias) - MONTE_CARLO.sigmas * error)
             if self.step is not None or known <= self.allowed_bias:
-                return _outcome(crossed, paths, step, bias, error)
+                return outcome(crossed, paths, step, bias, error)
             step = refined_step(step, np.max(np.abs(bias) + error), self.allowed_bias, self.order)
         raise ToleranceError(
             f"W = {crossed.flat[-1] / paths:.3g} has a bias of {np.max(np.abs(bias)):.1e} by the "
             f"step {check.step:.1e}, which does not fall by the weak order; choose a step or "
             "loosen tol",
-            _outcome(crossed, paths, check.step, bias, error),
+            outcome(crossed, paths, check.step, bias, error),
         )
 
     def counted(self, step, wanted, pilot):
@@ -256,8 +256,8 @@ class _Request:
             crossed = crossed + np.cumsum(counts, axis=1)
             done = wanted
             allowed = MONTE_CARLO.spread_share * self.tol
-            if self.paths is None and _distance(crossed, done) > allowed:
-                wanted = max(_paths_wanted(crossed, done, self.tol), done + BLOCK)
+            if self.paths is None and distance(crossed, done) > allowed:
+                wanted = max(paths_wanted(crossed, done, self.tol), done + BLOCK)
                 self.require_possible(wanted, step, crossed, done, pilot)
         return crossed, done
 
@@ -282,7 +282,21 @@ class _Request:
         require_possible(work, self.times[-1] / step, told, self.tol, self.most, known)
 
 
-def _outcome(crossed, paths, step, bias, error):
+def outcome(
+    crossed: np.ndarray, paths: int, step: float, bias: np.ndarray, error: np.ndarray
+) -> tuple[dict, dict]:
+    """Return values and attributes of a count, as `sampled_crossing` does.
+
+    Parameters
+    ----------
+    crossed : numpy.ndarray, shape (k,)
+        Number of paths that have crossed, or the sum of their probabilities to have crossed: the
+        spread of these is less than that of a count.
+    paths : int
+    step : float
+    bias, error : numpy.ndarray, shape (k,)
+        Of the step, with its standard error.
+    """
     counted = crossing_estimate(crossed, paths)
     spread = counted["probability_error"]
     lower, upper = limits_less_bias(crossed, paths, bias, error)
@@ -298,13 +312,13 @@ def _outcome(crossed, paths, step, bias, error):
     return values, {"step": step, "paths": paths}
 
 
-def _distance(crossed, paths):
+def distance(crossed: np.ndarray, paths: int) -> float:
     """Distance of the farthest confidence limit of the probabilities."""
     value, low, high = proportion(crossed, paths, tuning.COUNTING.confidence)
     return np.max(np.maximum(high - value, value - low))
 
 
-def _paths_wanted(crossed, paths, tol):
+def paths_wanted(crossed: np.ndarray, paths: int, tol: float) -> int:
     """Return how many paths, in whole blocks, should bring the limits within the tolerance.
 
     Jeffreys' limits are three standard deviations and `skew` |1 - 2 W| counts away. To be careful,

@@ -14,6 +14,7 @@ the step and with half of it on the same noise.
 - `time_loop.march`: the loop over time steps
 - `parallel.parallel`: blocks of paths on several threads, which Ctrl-C stops
 - `cost`: what a simulation would cost; what nobody can wait for is refused
+- `absorption.survival.crossed`: how many paths have left an interval of the state
 - `time_grids`, `control_variate`: output times; a variable of known mean that reduces the
   standard error
 - `schemes` holds the time-stepping schemes, `kernels` what they are built from

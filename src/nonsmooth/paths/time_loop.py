@@ -52,29 +52,31 @@ def _pointer(typing, address):
     return numba.types.CPointer(address.dtype)(address), generate
 
 
-def _flow(s, data, first, last, lanes):
-    raise TypeError("flow is for kernels")
+def mechanical_flow(s, data, first, last, lanes):
+    """Apply, in kernels, the flow of the scheme whose coefficients are given."""
+    raise TypeError("mechanical_flow is for kernels")
 
 
-@overload(_flow)
+@overload(mechanical_flow)
 def _choose_flow(s, data, first, last, lanes):
     chosen = registry.of_coefficients(s.instance_class).flow
     return lambda s, data, first, last, lanes: chosen(s, data, first, last, lanes)
 
 
-def _kick(s, data, normal, lanes):
-    raise TypeError("kick is for kernels")
+def noise_kick(s, data, normal, lanes):
+    """Apply, in kernels, the kick of the scheme whose coefficients are given."""
+    raise TypeError("noise_kick is for kernels")
 
 
-@overload(_kick)
+@overload(noise_kick)
 def _choose_kick(s, data, normal, lanes):
     chosen = registry.of_coefficients(s.instance_class).kick
     return lambda s, data, normal, lanes: chosen(s, data, normal, lanes)
 
 
 @inlined
-def _of_known_shape(panel):
-    # Rows of a known length cannot overlap, which lets the compiler use vector instructions.
+def of_known_shape(panel):
+    """Return the panel's three arrays; rows of a known length cannot overlap, so they vectorise."""
     return (
         numba.carray(_pointer(panel.words.ctypes), (4, WIDTH)),
         numba.carray(_pointer(panel.data.ctypes), (ROWS, WIDTH)),
@@ -102,7 +104,7 @@ def march(s: Any, panel: Panel, lanes: int, steps: int, lower: float, upper: flo
     int
         Number of paths left, in the first lanes.
     """
-    for first, last in _pieces(steps + 1):
+    for first, last in pieces(steps + 1):
         lanes = _march(s, panel, lanes, first, last, steps, lower, upper, _NO_SUMS)
         count(last - first)
     return lanes
@@ -128,7 +130,7 @@ def march_and_sum(s: Any, panel: Panel, lanes: int, steps: int, sums: np.ndarray
             march(s, panel, lanes, steps, *EVERYWHERE)
             _march(s, panel, lanes, 0, 0, 0, *EVERYWHERE, own[None])
         return
-    for first, last in _pieces(len(sums)):
+    for first, last in pieces(len(sums)):
         _march(s, panel, lanes, 0, steps + 1, steps, *EVERYWHERE, sums[first:last])
         count((last - first) * steps)
 
@@ -139,7 +141,7 @@ def compile_march(s: Any, panel: Panel) -> None:
         march(s, panel, 0, 0, *EVERYWHERE)
 
 
-def _pieces(steps: int) -> Iterator[tuple[int, int]]:
+def pieces(steps: int) -> Iterator[tuple[int, int]]:
     """Divide the steps of a loop into pieces that last long enough for Python not to matter.
 
     Their lengths are multiples of `FLUSH`, so that the division changes no bit.
@@ -159,7 +161,7 @@ def _march(s, panel, lanes, first, last, steps, lower, upper, sums):
 
     If sums are wanted, do so as often as there are, and add to the next ones each time.
     """
-    words, data, total = _of_known_shape(panel)
+    words, data, total = of_known_shape(panel)
     for interval in range(max(len(sums), 1)):
         lanes = _advance(s, words, data, total, lanes, first, last, steps, lower, upper)
         if len(sums) > 0:
@@ -171,7 +173,7 @@ def _march(s, panel, lanes, first, last, steps, lower, upper, sums):
 def _advance(s, words, data, total, lanes, first, last, steps, lower, upper):
     normal = 2
     for k in range(first, last):
-        _flow(s, data, k == 0, k == steps, lanes)
+        mechanical_flow(s, data, k == 0, k == steps, lanes)
         if k == steps:
             observe(data, lanes)  # what the last flow has added to int g
         else:
@@ -180,7 +182,7 @@ def _advance(s, words, data, total, lanes, first, last, steps, lower, upper):
                 if s.normals == 4:
                     normals(words, data[2:], lanes)
                 normal = 0
-            _kick(s, data, normal, lanes)
+            noise_kick(s, data, normal, lanes)
             normal += s.normals
         if lower != -upper:  # for levels -b and b, max |int g| is enough, which is kept anyway
             follow_extremes(data, lanes)
@@ -273,7 +275,7 @@ def march_pair(
         interpolated within a step; inf before.
     """
     levels = lower, upper
-    for first, last in _pieces(2 * steps + 1):
+    for first, last in pieces(2 * steps + 1):
         pair = fine, coarse, panel, other, lanes, first, last, steps
         _march_pair(*pair, *levels, began, 0.0, passage, _NO_CHANGES)
         count(last - first)
@@ -313,7 +315,7 @@ def march_pair_and_sum(
             pair = fine, coarse, panel, other, lanes, 0, 0, 0
             _march_pair(*pair, *levels, at, span, passage, own[None])
         return
-    for first, last in _pieces(len(sums)):
+    for first, last in pieces(len(sums)):
         pair = fine, coarse, panel, other, lanes, 0, 2 * steps + 1, steps
         _march_pair(*pair, *levels, began + first * span, span, passage, sums[first:last])
         count((last - first) * 2 * steps)
@@ -327,8 +329,8 @@ def _march_pair(
 
     If sums are wanted, do so as often as there are, and add to the next ones each time.
     """
-    words, data, total = _of_known_shape(panel)
-    _, joined, other_total = _of_known_shape(other)
+    words, data, total = of_known_shape(panel)
+    _, joined, other_total = of_known_shape(other)
     arrays = words, data, total, joined, other_total
     for interval in range(max(len(sums), 1)):
         now = began + interval * span
@@ -340,14 +342,12 @@ def _march_pair(
 @inlined
 def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper, began, passage):
     words, data, total, joined, other_total = arrays
-    a, b, c, d = fine.transition
-    e, f, g = fine.factor
     for k in range(first, last):  # counts the fine steps
         odd = k % 2 == 1
         now = began + (k // 2) * float(coarse.step)
-        _flow(fine, data, k == 0, k == 2 * steps, lanes)
+        mechanical_flow(fine, data, k == 0, k == 2 * steps, lanes)
         if not odd:
-            _flow(coarse, joined, k == 0, k == 2 * steps, lanes)
+            mechanical_flow(coarse, joined, k == 0, k == 2 * steps, lanes)
         if k == 2 * steps:
             observe(data, lanes)
             observe(joined, lanes)
@@ -355,23 +355,43 @@ def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper,
             normal = 1 if odd and fine.normals == 1 else 0
             if normal == 0:
                 normals(words, data, lanes)
-            # join the noise of two fine steps to that of one coarse step, see `scheme.Coefficients`
-            for i in range(lanes):
-                first = data[normal, i]
-                second = data[1, i] if fine.normals == 2 else like(e, 0.0)
-                early = joined[0, i] if odd else like(e, 0.0)
-                also = joined[1, i] if odd else like(e, 0.0)
-                joined[0, i] = fma(a, early, fma(b, also, fma(e, first, early)))
-                joined[1, i] = fma(c, early, fma(d, also, fma(f, first, fma(g, second, also))))
-            _kick(fine, data, normal, lanes)
+            join_noise(fine, data, joined, normal, odd, lanes)
+            noise_kick(fine, data, normal, lanes)
             start = now + fine.step if odd else now
             _note_passage(data, passage[0], lanes, lower, upper, start, fine.step)
             if odd:
-                _kick(coarse, joined, 0, lanes)
+                noise_kick(coarse, joined, 0, lanes)
                 _note_passage(joined, passage[1], lanes, lower, upper, now, coarse.step)
         if (k + 1) % FLUSH == 0 or k == 2 * steps:
             flush(data, total, lanes)
             flush(joined, other_total, lanes)
+
+
+@inlined
+def join_noise(fine, data, joined, normal, odd, lanes):
+    """Join the noise of two fine steps to that of a coarse one, see `scheme.Coefficients`.
+
+    Parameters
+    ----------
+    fine : NamedTuple
+        Coefficients of the fine step.
+    data, joined : array
+        Of the fine and of the coarse paths.
+    normal : int
+        Row of `data` with the normal numbers of the fine step.
+    odd : bool
+        Whether it is the second of the two.
+    lanes : int
+    """
+    a, b, c, d = fine.transition
+    e, f, g = fine.factor
+    for i in range(lanes):
+        first = data[normal, i]
+        second = data[1, i] if fine.normals == 2 else like(e, 0.0)
+        early = joined[0, i] if odd else like(e, 0.0)
+        also = joined[1, i] if odd else like(e, 0.0)
+        joined[0, i] = fma(a, early, fma(b, also, fma(e, first, early)))
+        joined[1, i] = fma(c, early, fma(d, also, fma(f, first, fma(g, second, also))))
 
 
 def compile_march_pair(fine: Any, coarse: Any, panel: Panel) -> None:

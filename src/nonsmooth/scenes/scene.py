@@ -240,6 +240,10 @@ class Scene:
         """Return the same scene with another penalization."""
         return self._changed(n=n)
 
+    def with_observable(self, observable: str) -> "Scene":
+        """Return the same scene with another observable, whose variables may be others."""
+        return self._changed(observable=observable)
+
     def with_start(self, start: dict[str, float]) -> "Scene":
         """Return the same scene from another starting point."""
         return self._changed(start=start)

@@ -1,0 +1,185 @@
+"""The probability that a variable of the state leaves an interval before a time."""
+
+import inspect
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from nonsmooth.checks import (
+    require_choice,
+    require_count,
+    require_increasing,
+    require_positive,
+    require_seed,
+    require_threads,
+    require_tolerance,
+)
+from nonsmooth.crossing.state import line, tuning
+from nonsmooth.crossing.state.problem import state_crossing
+from nonsmooth.crossing.state.sampled import sampled_state_crossing
+from nonsmooth.errors import SceneError, answered, first_answer
+from nonsmooth.paths.sampling import PRECISIONS
+from nonsmooth.paths.tuning import MONTE_CARLO
+from nonsmooth.scenes.scene import Scene, require_scene
+
+
+def state_crossing_probability(
+    scene: Scene,
+    variable: str,
+    threshold: float | tuple[float, float],
+    horizons: ArrayLike,
+    method: str | None = None,
+    tol: float | None = None,
+    step: float | None = None,
+    paths: int | None = None,
+    seed: int | tuple = 0,
+    precision: str | None = None,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Probability that a variable of the state leaves an interval before a time.
+
+    This is the classical first-passage problem, of the displacement or the velocity themselves; see
+    `crossing_probability` for that of the integral of g.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its observable does not matter.
+    variable : {"x", "y", "eta", "zeta"}
+        The displacement, the velocity, or a variable of the scene's noise.
+    threshold : float or (float, float)
+        b > 0: the interval is (-b, b). Or lower < 0 < upper, one of which may be infinite. The
+        variable starts inside. In units of the variable, "1".
+    horizons : array_like, shape (k,)
+        Increasing T > 0, "1".
+    method : {"monte_carlo", "deterministic"}, optional
+        ``"deterministic"`` is for a variable that is a state by itself: y where neither a potential
+        nor colored noise acts, and eta of Langevin noise. Unless given, it is chosen for these, and
+        ``"monte_carlo"`` for all others or if `step`, `paths` or `precision` are given.
+    tol : float, optional
+        Absolute error wanted; 1e-8 for ``"deterministic"`` and 1e-2 for ``"monte_carlo"`` unless
+        given. By Monte Carlo the number of paths and the time step follow from it, unless they are
+        given: three standard errors are at most three quarters of `tol`, and the bias of the step
+        is at most a quarter.
+    step : float, optional
+        Longest time step, "1"; ``"monte_carlo"`` only.
+    paths : int, optional
+        Number of paths; ``"monte_carlo"`` only.
+    seed : int or tuple
+    precision : {"float32", "float64"}, optional
+        ``"monte_carlo"`` only; ``"float32"`` unless given.
+    threads : int, optional
+        All cores unless given.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `horizon`, with the method among its attributes: `probability` and its distance
+        `probability_error` to the probability asked for, which is between `lower` and `upper`.
+
+        - ``"deterministic"``: the error is estimated from two resolutions.
+        - ``"monte_carlo"``: the bias of the time step and the standard error together, and `lower`
+          and `upper` are 95 % confidence limits that account for both. Crossings within a step
+          count: of the variable that noise drives by the law of the Brownian bridge, of smooth
+          ones as part of the bias. The `standard_error` alone; and the bias, as measured by
+          doubling the step, `step_bias` with its standard error `step_bias_error`.
+
+    Raises
+    ------
+    SceneError
+        If an argument is out of range, the variable starts outside, or the method does not apply.
+    ToleranceError
+        If `tol` cannot be met; the best is its `result`.
+
+    Examples
+    --------
+    >>> import nonsmooth as ns
+    >>> scene = ns.Scene("friction")
+    >>> W = ns.state_crossing_probability(scene, "y", 1.0, [1, 10])
+    >>> print(W["probability"].values.round(4))
+    [0.3198 0.9713]
+    """
+    require_scene(scene)
+    asked = state_crossing(scene, variable, threshold)
+    times = require_increasing("horizons", horizons)
+    method = None if method is None else require_choice("method", method, METHODS)
+    options = {"tol": tol, "step": step, "paths": paths, "precision": precision}
+    given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
+    given |= {"seed": require_seed(seed), "threads": require_threads(threads)}
+    names = _fitting(asked, given) if method is None else [method]
+
+    def attempt(name):
+        return answered(
+            lambda: METHODS[name](asked, times, **_taken(name, given)),
+            lambda found: (name, *found),
+        )
+
+    def solve():
+        return first_answer(
+            (partial(attempt, name) for name in names),
+            error=lambda found: np.max(found[1]["probability_error"]),
+            good_enough=MONTE_CARLO.tolerance if tol is None else 0.0,
+        )
+
+    def present(found):
+        name, values, attributes = found
+        value, error = values["probability"], values["probability_error"]
+        limits = {"lower": np.maximum(value - error, 0), "upper": np.minimum(value + error, 1)}
+        return xr.Dataset(
+            {name: ("horizon", value) for name, value in (limits | values).items()},
+            coords={"horizon": times},
+            attrs={"method": name} | attributes,
+        )
+
+    return answered(solve, present, tol_given=tol is not None)
+
+
+def _fitting(asked, given):
+    """Name the methods to try in turn."""
+    if not line.applies(asked) or {"step", "paths", "precision"} & given.keys():
+        return ["monte_carlo"]
+    sampled = given.get("tol", MONTE_CARLO.tolerance) >= MONTE_CARLO.tolerance
+    return ["deterministic", "monte_carlo"] if sampled else ["deterministic"]
+
+
+def _taken(name, given):
+    """Return the parameters that a method takes, and refuse others that were given."""
+    known = inspect.signature(METHODS[name]).parameters
+    for option in given.keys() - known.keys() - {"seed", "threads"}:
+        raise SceneError(f"the method {name!r} has no parameter {option!r}; leave it out")
+    return {option: value for option, value in given.items() if option in known}
+
+
+def _deterministic(asked, times, tol=None):
+    if not line.applies(asked):
+        raise SceneError(
+            f"crossings of {asked.variable} are solved where it is a state by itself, not for "
+            f"({', '.join(asked.scene.state)}) with {asked.scene.noise.title}; use "
+            "method='monte_carlo'"
+        )
+
+    def present(found):
+        return {"probability": found[0], "probability_error": found[1]}, {}
+
+    return answered(
+        lambda: line.solved(asked, times, tuning.LINE.tolerance if tol is None else tol), present
+    )
+
+
+# checks of the parameters that only some methods have
+_OPTIONS: dict[str, Callable] = {
+    "tol": require_tolerance,
+    "step": lambda step: require_positive("step", step),
+    "paths": lambda paths: require_count("paths", paths),
+    "precision": lambda precision: require_choice("precision", precision, PRECISIONS),
+}
+
+# Each takes a StateCrossing, the horizons, and those of the other parameters that it has. It
+# returns a dict of the variables over the horizons and a dict of attributes.
+METHODS: dict[str, Callable] = {
+    "deterministic": _deterministic,
+    "monte_carlo": sampled_state_crossing,
+}

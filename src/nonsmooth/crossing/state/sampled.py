@@ -1,0 +1,108 @@
+"""Crossings of the state by Monte Carlo; a tolerance decides on paths and time step."""
+
+import math
+
+import numpy as np
+
+from nonsmooth.crossing import tuning as crossing_tuning
+from nonsmooth.crossing.monte_carlo import distance, outcome, paths_wanted
+from nonsmooth.crossing.state import tuning
+from nonsmooth.crossing.state.problem import StateCrossing
+from nonsmooth.errors import ToleranceError
+from nonsmooth.paths.absorption.survival import crossed
+from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.paths.resolution import first_step, refined_step, require_possible
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.tuning import MONTE_CARLO
+
+
+def sampled_state_crossing(
+    asked: StateCrossing,
+    times: np.ndarray,
+    seed: int | tuple,
+    threads: int | None,
+    tol: float = MONTE_CARLO.tolerance,
+    step: float | None = None,
+    paths: int | None = None,
+    precision: str = "float32",
+) -> tuple[dict, dict]:
+    """Average the probabilities of paths to have left the interval.
+
+    All paths are also run with twice the step on the same noise, from which follows the bias. A
+    pilot with a coarse step tells how many paths and which step the tolerance takes, unless they
+    are given.
+
+    Parameters
+    ----------
+    asked : StateCrossing
+    times : numpy.ndarray, shape (t,)
+        Increasing, positive.
+    seed, threads, tol, step, paths, precision
+        As for `state_crossing_probability`.
+
+    Returns
+    -------
+    values : dict
+        As from `crossing.monte_carlo.sampled_crossing`.
+    attributes : dict
+        `step`, `paths`.
+
+    Raises
+    ------
+    SceneError
+        If a path diverges.
+    ToleranceError
+        If `tol` takes too many steps.
+    """
+    own_step = _coarsest(asked, times) if step is None else step
+    own_paths = paths or min(
+        MONTE_CARLO.pilot_paths, math.ceil(crossing_tuning.COUNTING.pilot / tol)
+    )
+    label = seed if step and paths else labelled(seed, "pilot")
+    for _ in range(tuning.SAMPLED.attempts):
+        sampling = Sampling(own_step, own_paths, label, threads=threads, precision=precision)
+        counts, found = _sample(asked, times, sampling)
+        off = distance(counts, own_paths)
+        bias, error = found[0]["step_bias"], found[0]["step_bias_error"]
+        share = MONTE_CARLO.spread_share * tol
+        enough = paths is not None or off <= share
+        known = np.max(np.abs(bias) - MONTE_CARLO.sigmas * error)
+        if enough and (step is not None or known <= tol - share):
+            return found
+        if step is None:
+            worst = np.max(np.abs(bias) + error)
+            own_step = refined_step(own_step, worst, tol - share, tuning.SAMPLED.order)
+        if not enough:
+            own_paths = max(own_paths, paths_wanted(counts, own_paths, tol))
+        label = seed
+        value = found[0]["probability"][-1]
+        told = f"W = {value:.3g} has an error of {off:.1g}"
+        steps = 3 / 2 * times[-1] / own_step
+        require_possible(own_paths, steps, told, tol, result=found)
+    raise ToleranceError(
+        f"W = {value:.3g} has an error of {off:.1g} and a bias of {np.max(np.abs(bias)):.1e} by "
+        "the step; loosen tol or choose step and paths",
+        found,
+    )
+
+
+def _coarsest(asked, times):
+    """Longest step of the pilot: rough paths must not pass the interval in one."""
+    step = first_step(asked.scene, times)
+    if asked.driven:
+        way = min(asked.upper - asked.start, asked.start - asked.lower)
+        step = min(step, (tuning.SAMPLED.part_of_way * way / asked.scene.noise.sigma) ** 2)
+    return step
+
+
+def _sample(asked, times, sampling):
+    """Return the sum of the probabilities to have left, and values and attributes."""
+    levels = asked.lower, asked.upper
+    sums = crossed(asked.scene, asked.scene.observable, levels, times, sampling)
+    paths = sampling.paths
+    counts, change, square = np.clip(sums[:, 0], 0.0, paths), sums[:, 1] / paths, sums[:, 2] / paths
+    # what doubling the step changes is (2^q - 1) times the bias; if no path shows a change, the
+    # error is that of a single path with different outcomes
+    factor = 1 / (2**tuning.SAMPLED.order - 1)
+    error = factor * np.sqrt(np.maximum(square - change**2, 1 / paths) / paths)
+    return counts, outcome(counts, paths, sampling.step, factor * change, error)

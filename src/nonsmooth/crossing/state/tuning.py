@@ -1,0 +1,42 @@
+"""Numbers that were chosen for crossings of the state, a record for each method."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Line:
+    """Eigenfunctions of one variable."""
+
+    tolerance: float = 1e-8  # chosen: absolute error unless the user asks for another
+    degrees: tuple[int, ...] = (6, 9, 12, 16, 20, 26)  # chosen: of the elements, coarse to fine
+    safety: float = 3.0  # chosen: the error is so many times the change of the last two degrees
+    depth: float = 60.0  # chosen: an infinite level is replaced where m has fallen by exp(-60)
+    first_reach: float = 1.0  # chosen: sigmas from the start at which that search begins
+    reach_step: float = 1.25  # chosen: factor of that search
+    fewest: float = 8.0  # chosen: elements of the interval, at least
+    layer: float = (
+        2.0  # chosen: elements at a level, over the way of the noise up to the first time
+    )
+    finest: float = 1e-4  # chosen: smallest element over the interval; smaller ones lose digits
+    steepest: float = 4.0  # chosen: change of Phi over an element, at most
+    extra_points: int = 16  # chosen: Gauss points beyond the degree, for exp(-Phi) in an element
+    least_nu: float = 1e-13  # derived: modes with a smaller 1 / (1 + lambda / scale) are rounding
+    rounding: float = 0.02  # fitted: to values by closed forms, relative to eps degree^2 / width
+    least: float = 1e-14  # derived: rounding of the sum over the modes
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """Monte Carlo."""
+
+    # derived: least weak order of a path that is killed at the ends of an interval. Paths that are
+    # seen between steps only miss an excursion of the size h^(3/2), and bridges are exact up to the
+    # change of the drift in a step, also h^(3/2); so the stated bias is rather too large
+    order: float = 1.0
+    # chosen: largest step of rough paths, as the square of a part of the way to the nearer level
+    part_of_way: float = 0.5
+    attempts: int = 4  # chosen: samples, each with the paths and the step that the last asked for
+
+
+LINE = Line()
+SAMPLED = Sampled()

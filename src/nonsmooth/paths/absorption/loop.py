@@ -1,0 +1,129 @@
+"""The loop over time steps that follows the probability of paths to have stayed in an interval.
+
+Two panels advance on the same noise, the second with steps twice as long, so that the bias of the
+step is known for every path. Each step begins and ends with a half-flow, because only the states
+between two steps are those of a path.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonsmooth.paths.kernels.compilation import announced, inlined, kernel
+from nonsmooth.paths.kernels.panel import Panel
+from nonsmooth.paths.kernels.random_numbers import normals
+from nonsmooth.paths.parallel import count
+from nonsmooth.paths.time_loop import (
+    join_noise,
+    mechanical_flow,
+    noise_kick,
+    of_known_shape,
+    pieces,
+)
+
+_FAR = 40.0  # exponents of crossing within a step beyond which its probability, 4e-18, is nothing
+
+
+class Interval(NamedTuple):
+    """What is left: a row of the panels, the levels, and the noise in that row.
+
+    Attributes
+    ----------
+    row : int
+    lower, upper : float
+    intensity : float
+        Variance of the noise in the row per unit of time; 0 if it drives another variable.
+    """
+
+    row: int
+    lower: float
+    upper: float
+    intensity: float
+
+
+def march_survival(
+    fine: Any,
+    coarse: Any,
+    panel: Panel,
+    other: Panel,
+    lanes: int,
+    steps: int,
+    interval: Interval,
+    before: np.ndarray,
+    survival: np.ndarray,
+) -> None:
+    """Advance two panels on the same noise, the second with steps twice as long.
+
+    Parameters
+    ----------
+    fine, coarse : NamedTuple
+        Coefficients of a scheme, of steps h/2 and h; the coarse ones take increments as given.
+    panel, other : Panel
+        Of the fine and of the coarse paths.
+    lanes : int
+        Number of paths.
+    steps : int
+        Of the coarse paths.
+    interval : Interval
+    before : numpy.ndarray, shape (2, lanes)
+        Values of the row now, of fine and coarse paths; kept up to date.
+    survival : numpy.ndarray, shape (2, lanes)
+        Probabilities to have stayed inside; kept up to date.
+    """
+    for first, last in pieces(steps):
+        if not survival.any():
+            return
+        _march(fine, coarse, panel, other, lanes, last - first, interval, before, survival)
+        count(3 * (last - first))
+
+
+def compile_march_survival(fine: Any, coarse: Any, panel: Panel) -> None:
+    """Compile `march_survival` for two sets of coefficients and the precision of a panel."""
+    nowhere = Interval(0, -math.inf, math.inf, 0.0)
+    with announced(_march):
+        _march(fine, coarse, panel, panel, 0, 0, nowhere, np.empty((2, 0)), np.empty((2, 0)))
+
+
+@kernel
+def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival):
+    words, data, _ = of_known_shape(panel)
+    _, joined, _ = of_known_shape(other)
+    for k in range(2 * steps):
+        odd = k % 2 == 1
+        normal = 1 if odd and fine.normals == 1 else 0
+        for end in range(2):
+            mechanical_flow(fine, data, end == 0, end == 1, lanes)
+            if end == 0:
+                if normal == 0:
+                    normals(words, data, lanes)
+                join_noise(fine, data, joined, normal, odd, lanes)
+                noise_kick(fine, data, normal, lanes)
+        _survive(data, interval, fine.step, before[0], survival[0], lanes)
+        if odd:
+            for end in range(2):
+                mechanical_flow(coarse, joined, end == 0, end == 1, lanes)
+                if end == 0:
+                    noise_kick(coarse, joined, 0, lanes)
+            _survive(joined, interval, coarse.step, before[1], survival[1], lanes)
+
+
+@inlined
+def _survive(data, interval, step, before, survival, lanes):
+    """Multiply the probabilities with those of having stayed inside during the last step."""
+    variance = interval.intensity * step
+    lower, upper = interval.lower, interval.upper
+    for i in range(lanes):
+        start, end = before[i], float(data[interval.row, i])
+        before[i] = end
+        if survival[i] == 0:
+            continue
+        if end >= upper or end <= lower:
+            survival[i] = 0
+        elif variance > 0:
+            above = 2 * (upper - start) * (upper - end) / variance
+            below = 2 * (start - lower) * (end - lower) / variance
+            if above < _FAR:
+                survival[i] *= -math.expm1(-above)
+            if below < _FAR:
+                survival[i] *= -math.expm1(-below)

@@ -1,0 +1,74 @@
+"""How many paths of an ensemble have left an interval of the state, and what the step changes."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nonsmooth.paths.absorption.loop import Interval, compile_march_survival, march_survival
+from nonsmooth.paths.ensembles import require_finite
+from nonsmooth.paths.kernels.panel import STATE, new_panel
+from nonsmooth.paths.parallel import parallel
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.paths.schemes import registry
+from nonsmooth.paths.time_grids import equal_steps
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import STATE_VARIABLES
+
+
+def crossed(
+    scene: Scene, variable: str, levels: tuple[float, float], times: ArrayLike, sampling: Sampling
+) -> np.ndarray:
+    """Sum up the probabilities of paths to have left an interval.
+
+    Parameters
+    ----------
+    scene : Scene
+    variable : str
+        The variable of the state that leaves it.
+    levels : (float, float)
+        Lower and upper end, between which it starts.
+    times : array_like, shape (t,)
+        Increasing.
+    sampling : Sampling
+        With the shorter of the two steps; its scheme must share the noise of two steps.
+
+    Returns
+    -------
+    numpy.ndarray, shape (t, 3)
+        Sums over the paths of C, C' - C and (C' - C)^2; C is the probability to have left the
+        interval with the step, and C' that with twice the step.
+
+    Raises
+    ------
+    SceneError
+        If a path diverges.
+    """
+    scheme, precision = sampling.scheme, sampling.precision
+    place = [symbol.name for symbol in STATE_VARIABLES].index(variable)
+    driven = variable == scene.noise.driven.name
+    interval = Interval(STATE[place], *levels, scene.noise.sigma**2 if driven else 0.0)
+    grid = equal_steps(times, 2 * sampling.step)
+    pairs = {
+        h: (
+            registry.coefficients(scene, scheme, h / 2, precision),
+            registry.on_given_increments(registry.coefficients(scene, scheme, h, precision)),
+        )
+        for h in {h for _, h in grid}
+    }
+    compile_march_survival(*pairs[grid[0][1]], new_panel(scene, sampling.seed, 0, precision))
+
+    def run(job):
+        block, count = job
+        panel, other = (new_panel(scene, sampling.seed, block, precision) for _ in range(2))
+        before = np.tile(panel.data[interval.row, :count].astype(float), (2, 1))
+        survival, sums = np.ones((2, count)), np.zeros((len(grid), 3))
+        for k, (steps, h) in enumerate(grid):
+            march_survival(*pairs[h], panel, other, count, steps, interval, before, survival)
+            change = survival[0] - survival[1]
+            sums[k] = np.sum(1 - survival[0]), change.sum(), np.sum(change**2)
+        require_finite(before)
+        return sums
+
+    total = np.zeros((len(grid), 3))
+    for sums in parallel(run, sampling, 3 * sum(steps for steps, _ in grid)):
+        total += sums
+    return total
