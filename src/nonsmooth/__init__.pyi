@@ -3,7 +3,7 @@ from .crossing.brownian import brownian_crossing as brownian_crossing
 from .crossing.brownian import brownian_first_passage_density as brownian_first_passage_density
 from .crossing.brownian import brownian_survival as brownian_survival
 from .crossing.probability import crossing_probability as crossing_probability
-from .crossing.state.probability import (
+from .crossing.state.crossing import (
     state_crossing_probability as state_crossing_probability,
 )
 from .errors import NonsmoothError as NonsmoothError

@@ -13,6 +13,6 @@ or by counting paths. The manual has the derivations and the choice of the metho
   distribution functions of `expansion` and the mean over the clock of `random_clock`.
 - `first_passage.distribution.deterministic_crossing`: the deterministic method.
 - `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting`.
-- `state.probability.state_crossing_probability`: crossings of the state, not of an integral.
+- `state.crossing.state_crossing_probability`: crossings of the state, not of an integral.
 - `tuning`: resolutions and switching points.
 """

@@ -1,6 +1,6 @@
 """First passage of a variable of the state, such as the displacement, out of an interval.
 
-- `probability.state_crossing_probability`: the public function, which chooses the method.
+- `crossing.state_crossing_probability`: the public function, which chooses the method.
 - `problem.StateCrossing`: what is asked; `problem.state_crossing` checks it.
 - `line.solved`: one state variable, by the eigenfunctions of the killed generator.
 - `plane.solved`: two state variables, by the backward equation on a tensor grid.

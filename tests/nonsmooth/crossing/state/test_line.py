@@ -16,7 +16,7 @@ def mode(rate, y):
 
 
 def part(rate, b, t):
-    """What an eigenfunction that vanishes at b adds to the survival probability from 0."""
+    """Return what an eigenfunction that vanishes at b adds to the survival probability from 0."""
     mass = mpmath.quad(lambda y: mode(rate, y) * mpmath.exp(-y * y), [0, b])
     norm = mpmath.quad(lambda y: mode(rate, y) ** 2 * mpmath.exp(-y * y), [0, b])
     return mass / norm * mpmath.exp(-rate * t)
