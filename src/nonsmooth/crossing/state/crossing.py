@@ -100,7 +100,7 @@ def state_crossing_probability(
     >>> scene = ns.Scene("friction")
     >>> W = ns.state_crossing_probability(scene, "y", 1.0, [1, 10])
     >>> print(W["probability"].values.round(4))
-    [0.3198 0.9713]
+    [0.2107 0.9439]
     """
     require_scene(scene)
     asked = state_crossing(scene, variable, threshold)

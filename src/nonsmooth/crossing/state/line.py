@@ -55,7 +55,8 @@ def solved(asked: StateCrossing, times: np.ndarray, tol: float) -> tuple[np.ndar
     ToleranceError
         If `tol` is not met; the best is its `result`.
     """
-    settings, phi, knot = tuning.LINE, *_potential(asked)
+    settings = tuning.LINE
+    phi, knot = _potential(asked)
     edges = _edges(asked, phi, knot, times[0])
     depth = float(phi(np.array(asked.start)) - phi(edges).min())
 
