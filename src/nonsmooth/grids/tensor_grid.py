@@ -121,7 +121,8 @@ def fitted(scene: Scene, depth: float, level: int) -> Grid:
     Grid
     """
     chosen = tuning.TENSOR_GRIDS
-    grid = Grid(box.half_widths(scene, depth), dict.fromkeys(variables(scene), level))
+    widest = box.half_widths(scene, depth)
+    grid = Grid(widest, dict.fromkeys(variables(scene), level))
     for _ in range(chosen.fits):
         axes, solve = solver(scene, grid)
         masses = solve.stationary(chosen.fit_accuracy).reshape(
@@ -135,6 +136,8 @@ def fitted(scene: Scene, depth: float, level: int) -> Grid:
             )
             for place, (symbol, axis) in enumerate(axes.items())
         }
+        if scene.noise.kind == "white":  # the box is large enough: coarse grids smear the density
+            found = {symbol: min(end, widest[symbol]) for symbol, end in found.items()}
         ends = box.narrowed(scene, grid.ends, found)
         change = max(abs(math.log(ends[symbol] / grid.ends[symbol])) for symbol in ends)
         grid = replace(grid, ends=ends)

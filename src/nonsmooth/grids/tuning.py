@@ -94,7 +94,7 @@ class UniformRefinement:
     # chosen: largest factor by which a level reduces the error; if the change falls by more, the
     # error has changed its sign
     gain: float = 30.0
-    boxed: int = 1  # chosen: level on which a larger box is tried; its effect needs no finer one
+    boxed: int = 1  # chosen: first level on which a larger box is tried; few need a finer one
 
 
 @dataclass(frozen=True)

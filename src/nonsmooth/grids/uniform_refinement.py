@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from nonsmooth.grids import tuning
+from nonsmooth.grids.mesh.box_effect import BoxEffect
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.refine import Refined, until_agreement
 from nonsmooth.scenes.scene import Scene
@@ -23,7 +24,6 @@ class _Solved:
     """Values on one grid, and the part of their error that is not due to the grid."""
 
     level: int
-    grid: Grid
     values: np.ndarray
     inexact: np.ndarray
 
@@ -58,19 +58,28 @@ def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
     -------
     Refined
         The error is the sum of three parts: twice the difference of the last two levels, twice
-        what a larger box changes, and twice the error that is not due to the grid. Errors may
-        change their sign between levels, so that two levels agree by chance. Therefore the
-        difference is taken to be at least that of the two levels before, divided by the largest
-        factor that a level gains. The refinement ends without success if the tolerance is out of
-        reach, or if a level changes the values by more than half of what the one before did.
+        what a larger box changes on one of the levels, and twice the error that is not due to the
+        grid. Errors may change their sign between levels, so that two levels agree by chance.
+        Therefore the difference is taken to be at least that of the two levels before, divided by
+        the largest factor that a level gains. The refinement ends without success if the tolerance
+        is out of reach, or if a level changes the values by more than half of what the one before
+        did.
     """
     chosen = tuning.UNIFORM_REFINEMENT
 
     def solved(level):
-        at = grid.at_level(level)
-        return _Solved(level, at, *solve(at))
+        return _Solved(level, *solve(grid.at_level(level)))
 
-    def error(found):
+    found: list[_Solved] = []
+
+    def change_by_box(level):
+        wider, _ = solve(grid.at_level(level).enlarged())
+        return 2 * np.abs(wider - found[level].values)
+
+    box = BoxEffect(change_by_box, lambda change: share(change, found[-1].values))
+
+    def error(solutions):
+        found[:] = solutions
         last = found[-1]
         changes = _changes([level.values for level in found])
         size = share(changes[-1], last.values)
@@ -79,9 +88,11 @@ def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
         bound = chosen.safety * changes[-1] + 2 * last.inexact
         converging = bool(size <= min(larger / 2, reach))
         if converging and share(bound, last.values) <= 1:
-            coarse = found[min(chosen.boxed, len(found) - 2)]
-            wider, _ = solve(coarse.grid.enlarged())
-            bound = bound + 2 * np.abs(wider - coarse.values)
+            bound = bound + box.below(
+                min(chosen.boxed, last.level - 1),
+                last.level,
+                lambda effect: share(bound + effect, last.values) <= 1,
+            )
         return _Error(bound, converging)
 
     result = until_agreement(

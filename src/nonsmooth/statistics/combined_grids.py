@@ -13,6 +13,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import tuning as grid_tuning
 from nonsmooth.grids.combination_technique import Combination
 from nonsmooth.grids.mesh.box import narrowed
+from nonsmooth.grids.mesh.box_effect import BoxEffect
 from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, points
 from nonsmooth.progress import counter
 from nonsmooth.refine import until_agreement
@@ -102,16 +103,26 @@ def _combined(scene, tol, functional, allowed, floor):
     coarse = coarse.all_raised(chosen.coarse[count] - chosen.fitted[count])
     on = functools.partial(functional, scene)
     base, accuracy, residual = _on_coarsest(coarse, tol, on, allowed)
-    larger = on(coarse.enlarged(), accuracy)
     directions = _directions(coarse)
 
     def grid(index):
         levels = {s: level for part, level in zip(directions, index, strict=True) for s in part}
         return replace(coarse, levels=levels)
 
+    largest = grid_tuning.TENSOR_GRIDS.largest[count]
+    box = _box_effect(coarse, base, lambda grid: on(grid, accuracy))
+    finest = _finest(scene, coarse, chosen.boxed * largest)
+
     def error(combination):
-        rest = residual * abs(allowed(combination.value, 1.0))
-        return combination.error + 2 * abs(larger - base) + rest
+        value = combination.value
+        own = combination.error + residual * abs(allowed(value, 1.0))
+        most = allowed(value, tol)
+        # a finer grid for the box is of use only where its effect alone is too large
+        return own + box.below(
+            0,
+            finest if own <= most else 0,
+            lambda effect: effect <= max(most - own, chosen.others * most),
+        )
 
     combination = Combination(
         tuple(coarse.levels[part[0]] for part in directions),
@@ -129,22 +140,47 @@ def _combined(scene, tol, functional, allowed, floor):
     def no_digit(combination):
         return error(combination) > abs(allowed(combination.value, 1.0))
 
-    largest = grid_tuning.TENSOR_GRIDS.largest[count]
-    _enlarge(combination, error, enough, no_digit, largest, 1 + len(directions))
+    def vain(combination):
+        return combination.error <= chosen.others * allowed(combination.value, tol)
+
+    _enlarge(combination, error, enough, no_digit, vain, largest, 1 + len(directions))
     best = grid(combination.dearest())
     return Combined(combination.value, error(combination), scene, best, accuracy)
 
 
-def _enlarge(combination, error, enough, no_digit, largest, patience):
+def _box_effect(coarse, base, on):
+    """Return what a larger box changes on the coarsest grid, whose value is `base`, or a finer."""
+
+    def change(more):
+        finer = coarse.all_raised(more)
+        try:
+            return 2 * abs(on(finer.enlarged()) - (on(finer) if more else base))
+        except ToleranceError:  # the iteration may not converge on finer grids
+            if more:
+                return math.inf
+            raise
+
+    return BoxEffect(change, float)
+
+
+def _finest(scene, coarse, largest):
+    """Return by how many levels all variables can be raised within a number of grid points."""
+    more = 0
+    while points(scene, coarse.all_raised(more + 1)) <= largest:
+        more += 1
+    return more
+
+
+def _enlarge(combination, error, enough, no_digit, vain, largest, patience):
     """Add grids to a combination until it is enough, or there is no hope of that.
 
-    There is none if nothing affordable is left, or no digit is right and refining every variable
-    has not made the error smaller.
+    There is none if nothing affordable is left, or what is in the way is not the grid, or no digit
+    is right and refining every variable has not made the error smaller.
     """
     least, stalled = math.inf, 0
     left = tuning.GAMMA2_ON_GRIDS.work * largest
     with counter("grids") as advance:
-        while not enough(combination):
+        while not (enough(combination) or vain(combination)):
             try:
                 cost = combination.refine(min(largest, left))
             except ToleranceError:  # a finer grid on which the iteration does not converge

@@ -15,6 +15,7 @@ from nonsmooth.checks import require_tolerance
 from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import tensor_grid
+from nonsmooth.grids.mesh.box_effect import BoxEffect
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.line import eigenfunctions
@@ -142,27 +143,23 @@ def _with_two_variables(scene: Scene, tol: float) -> tuple[Iterable, Callable, C
     """Return the levels, the solver of a level, and what measures the error of the box."""
     chosen = tuning.SPECTRAL_GAP
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), chosen.fitted)
-    unseen = iter(range(chosen.finest + 1))  # levels on which no larger box has been tried yet
-    effects: list[float] = []
+    rates: list[float] = []
 
     def solve(level):
         return gap_on(scene, grid.at_level(level), chosen.iteration * tol)
 
-    def box(found, own, allowed):
-        """Measure the effect of the box on a coarse level, and on finer ones if it is too large.
+    def change_by_box(level):
+        try:
+            wider, _ = gap_on(scene, grid.at_level(level).enlarged(), chosen.iteration * tol)
+        except np.linalg.LinAlgError:
+            return math.inf
+        return 2 * abs(wider - rates[level])
 
-        The smallest result is the best: the others are due to the elements that are added.
-        """
-        while not (effects and own + min(effects) <= allowed):
-            level = next(unseen)
-            try:
-                wider, _ = gap_on(scene, grid.at_level(level).enlarged(), chosen.iteration * tol)
-                effects.append(2 * abs(wider - found[level][0]))
-            except np.linalg.LinAlgError:
-                effects.append(math.inf)
-            if level == len(found) - 1:
-                break
-        return min(effects)
+    effect = BoxEffect(change_by_box, float)
+
+    def box(found, own, allowed):
+        rates[:] = [rate for rate, _ in found]
+        return effect.below(0, len(found) - 1, lambda change: own + change <= allowed)
 
     return range(chosen.finest + 1), solve, box
 

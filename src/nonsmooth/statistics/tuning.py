@@ -19,6 +19,11 @@ class Gamma2OnGrids:
     residual: float = 0.02  # chosen: first residual of the iteration, relative to the tolerance
     iteration: float = 0.1  # chosen: part of the tolerance that a tenth of the residual may change
     work: int = 8  # chosen: work for one value, in units of the largest grid; bounds the time
+    # chosen: largest grid on which a larger box is tried, in units of the largest grid
+    boxed: float = 0.25
+    # chosen: part of the tolerance that box and residual may use up; where they use more, finer
+    # grids are of no avail once their own error is below this part
+    others: float = 0.25
     rounding: float = 1e-3  # chosen: part of the tolerance that covers rounding
     stiff: float = 1e7  # chosen: n in place of inf; the rest, of order 1/n, is extrapolated
     stiff_elastic: float = 1e12  # chosen: the same for elastic walls; the rest is n^(-1/2)

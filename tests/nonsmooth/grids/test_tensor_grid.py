@@ -13,3 +13,14 @@ def test_the_box_holds_the_invariant_density():
     scene = ns.Scene("obstacle", ns.White(2.0), n=100, damping=0.5, potential="x**2/2")
     grid = tensor_grid.fitted(scene, 20.0, 2)
     assert grid.ends[y] == pytest.approx(2.0 * np.sqrt(40.0), rel=0.15)
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_coarse_grids_do_not_inflate_the_box(level):
+    """White noise gives the velocity at most the variance of the linear oscillator.
+
+    A narrow well is coarsely resolved by the first grid, which smears the density.
+    """
+    scene = ns.Scene("obstacle", ns.White(0.4), damping=0.8, potential="15*x**2", observable="x")
+    grid = tensor_grid.fitted(scene, 24.0, level)
+    assert grid.ends[y] <= 0.4 * np.sqrt(24.0 / 0.8) * (1 + 1e-12)

@@ -1,11 +1,14 @@
 """gamma^2 on tensor grids against what is known exactly."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 import nonsmooth as ns
 from exact_gamma2 import linear_reference, random_linear
 from nonsmooth.errors import ToleranceError
+from nonsmooth.grids import direct_solver
 from nonsmooth.statistics import gamma2_on_grids
 from references import GAMMA2_OBSTACLE, OBSTACLE
 
@@ -29,6 +32,29 @@ def test_three_variables_linear(square):
     scene = ns.Scene(**parameters, observable="x**2" if square else "x")
     found = ns.asymptotic_variance(scene, tol=2e-2, method="deterministic")
     assert abs(found.value - linear_reference(scene, square)) <= found.error
+
+
+def test_cost_grows_smoothly_with_the_digits(monkeypatch):
+    """Each digit takes at most four times the grid points of the one before, and errors hold.
+
+    The walls are too far to be reached: gamma^2 of x is sigma^2 over the squared stiffness.
+    """
+    scene = ns.Scene("obstacle", ns.White(0.4), damping=0.8, potential="15*x**2", observable="x")
+    sizes = []
+    factorise = direct_solver.SparseFactors.__init__
+
+    def counted(factors, matrix):
+        sizes.append(matrix.shape[0])
+        factorise(factors, matrix)
+
+    monkeypatch.setattr(direct_solver.SparseFactors, "__init__", counted)
+    work = []
+    for tol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
+        sizes.clear()
+        found = ns.asymptotic_variance(scene, tol, "deterministic")
+        work.append(sum(sizes))
+        assert abs(found.value - 0.16 / 900) <= found.error <= tol * found.value
+    assert all(fine <= 4 * coarse for coarse, fine in pairwise(work))
 
 
 def test_forcing_balance_of_the_elasto_plastic_model():

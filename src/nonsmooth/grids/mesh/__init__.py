@@ -5,6 +5,7 @@ variable the box is cut into elements whose edges lie on the kinks of the drift 
 there, so that the solution is smooth within each element.
 
 - `box.half_widths`, `box.narrowed`: how large the box must be.
+- `box_effect.BoxEffect`: what a larger box changes.
 - `edges.kinks`, `edges.potentials`, `edges.element_edges`: where the elements end.
 - `axes.variables`, `axes.axes`: nodes, weights and derivatives on these elements.
 """
