@@ -5,7 +5,8 @@ the form in which it returns what meets it. Public functions hand both through `
 """
 
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 Found = TypeVar("Found")
@@ -87,6 +88,15 @@ def answered(
         f"{message}; it is returned, because no tol was given", AccuracyWarning, stacklevel=3
     )
     return answer
+
+
+@contextmanager
+def of_another_quantity() -> Iterator[None]:
+    """Within, drop the `result` of a `ToleranceError`: it is not what the caller computes."""
+    try:
+        yield
+    except ToleranceError as refused:
+        raise ToleranceError(str(refused)) from None
 
 
 def first_answer(

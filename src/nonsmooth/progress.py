@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 Result = TypeVar("Result")
 
 DELAY = 1.0  # seconds; what is over sooner needs no bar
+BEAT = 0.5  # seconds between two looks at the clock
 
 
 def bar(what: str, total: float) -> AbstractContextManager[Callable[[float], None]]:
@@ -52,8 +53,21 @@ def _shown(what: str, total: float | None, shape: str) -> Iterator[Callable[[flo
         return
     from tqdm.auto import tqdm  # slow to import, and seldom needed
 
+    done = threading.Event()
+
+    def beat():
+        """Show the time that has passed, also while nothing advances."""
+        while not done.wait(DELAY + BEAT):
+            drawn.refresh()
+
     with tqdm(desc=what, total=total, delay=DELAY, leave=False, bar_format=shape) as drawn:
-        yield drawn.update
+        heart = threading.Thread(target=beat, daemon=True)
+        heart.start()
+        try:
+            yield drawn.update
+        finally:  # nothing may be drawn once the bar is gone
+            done.set()
+            heart.join()
 
 
 def interruptible(call: Callable[[], Result]) -> Result:

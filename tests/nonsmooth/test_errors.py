@@ -3,7 +3,13 @@
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import AccuracyWarning, ToleranceError, answered, first_answer
+from nonsmooth.errors import (
+    AccuracyWarning,
+    ToleranceError,
+    answered,
+    first_answer,
+    of_another_quantity,
+)
 from references import FRICTION
 
 
@@ -149,3 +155,11 @@ def test_the_default_is_answered_with_a_warning():
     with pytest.warns(AccuracyWarning, match="because no tol was given"):
         found = ns.invariant_density(scene)
     assert found.density_x_error > 1e-6 * found.density_x.max()
+
+
+def test_what_is_reached_of_another_quantity_is_no_result():
+    """A formula whose gamma^2 misses its tolerance does not return gamma^2 as a probability."""
+    with pytest.raises(ToleranceError, match="2 has an error of 1") as refused:
+        with of_another_quantity():
+            refusal(result=2.0)()
+    assert refused.value.result is None

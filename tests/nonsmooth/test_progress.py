@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -89,3 +90,17 @@ def test_ctrl_c_is_heard_while_a_library_works():
         signal.signal(signal.SIGINT, previous)
         done.set()
         presser.join()
+
+
+def test_a_clock_runs_while_nothing_advances(monkeypatch):
+    """The time that has passed is shown, also before the first of the things is done."""
+    stream = Screen()
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setattr(progress, "DELAY", 0.0)
+    monkeypatch.setattr(progress, "BEAT", 0.01)
+    with progress.counter("grids"):
+        for _ in range(500):
+            time.sleep(0.01)
+            if stream.getvalue().count("grids: 0") > 2:
+                return
+    pytest.fail(f"nothing but {stream.getvalue()!r} was shown")

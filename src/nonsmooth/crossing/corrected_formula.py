@@ -30,7 +30,7 @@ from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.boundary_layer.milne import highest_order, layer_constants
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.expansion import Expansion
-from nonsmooth.errors import SceneError, ToleranceError, quoted
+from nonsmooth.errors import SceneError, ToleranceError, of_another_quantity, quoted
 from nonsmooth.scenes.scene import Scene
 
 
@@ -79,10 +79,8 @@ def corrected_crossing(
         If an error is above `tol`; with the values and errors as its `result`.
     """
     _require_order(scene, order)
-    try:
+    with of_another_quantity():
         constants, errors = layer_constants(scene, seed, threads, accuracy)
-    except ToleranceError as refused:  # what it has reached are constants, not probabilities
-        raise ToleranceError(str(refused)) from None
     times = p * np.asarray(horizons, dtype=float)
     formula = Expansion(constants, *(np.sqrt(p) * level for level in threshold))
     if formula.moved_lower < 0 < formula.moved_upper:

@@ -29,7 +29,14 @@ from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
-from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer, quoted
+from nonsmooth.errors import (
+    SceneError,
+    ToleranceError,
+    answered,
+    first_answer,
+    of_another_quantity,
+    quoted,
+)
 from nonsmooth.paths.sampling import PRECISIONS
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene, require_random
@@ -235,8 +242,10 @@ def _asymptotic(scene, thresholds, horizons, p, seed, threads):
             f"paths, here of g = {quoted(scene.observable)}; choose another g, such as "
             f"{scene.primitive_variable}"
         )
-    gamma2 = limit_variance(scene, seed, threads)
-    _require_centred(scene, gamma2, mean(scene, seed=seed, threads=threads))
+    with of_another_quantity():
+        gamma2 = limit_variance(scene, seed, threads)
+        centre = mean(scene, seed=seed, threads=threads)
+    _require_centred(scene, gamma2, centre)
 
     def one(threshold):
         value, own = asymptotic_crossing(threshold, horizons, gamma2.value, gamma2.error)

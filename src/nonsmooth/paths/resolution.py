@@ -147,6 +147,6 @@ def require_resolved(step: float, variance: float, bias: float, error: float) ->
     if abs(bias) > max(tuning.MONTE_CARLO.measurable * variance, 4 * error):
         raise ToleranceError(
             f"step = {step:g} is too long for this scene: by halving it the bias of the variance "
-            f"of int g is found to be {abs(bias) / variance:.0%}, too much for this to measure it; "
-            "choose a smaller step"
+            f"of int g, {variance:.3g}, is found to be {abs(bias):.2g}, too much for this to "
+            "measure it; choose a smaller step"
         )

@@ -48,10 +48,10 @@ def equal_steps(times: ArrayLike, step: float) -> list[tuple[int, float]]:
     longest = np.minimum(step, np.maximum(times / tuning.TIME_GRID.first_steps, 1e-300))
     if not np.all(spans > 0):
         raise ValueError("output times must be positive and increase")
-    if not times[-1] / step <= tuning.COST.most_steps:
+    if not times[-1] <= tuning.COST.most_steps * step:
         raise ToleranceError(
-            f"steps of {step:.3g} up to the time {times[-1]:.3g} are {times[-1] / step:.0e}, more "
-            "than can be simulated; choose a longer step or a shorter time"
+            f"steps of {step:.3g} up to the time {times[-1]:.3g} are more than can be simulated; "
+            "choose a longer step or a shorter time"
         )
     counts = np.maximum(np.ceil(spans / longest - 1e-9).astype(int), 1)
     # Steps that differ by rounding only become the same number, so that they share coefficients.

@@ -6,6 +6,7 @@ from scipy import stats
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
+from nonsmooth.paths.resolution import require_resolved
 from nonsmooth.paths.simulation import simulate
 from references import FALSE_ALARM, FRICTION
 
@@ -38,3 +39,9 @@ def test_a_step_above_all_time_scales_is_refused():
         ns.simulate(FRICTION, horizon=500, step=50.0, paths=1000)
     with pytest.raises(ToleranceError, match="choose a smaller step"):
         ns.crossing_probability(FRICTION, 0.6, [2.0], p=250, step=50.0, paths=1000)
+
+
+def test_a_bias_without_a_variance_is_refused():
+    """A single path has no variance that its bias could be compared with."""
+    with pytest.raises(ToleranceError, match="choose a smaller step"):
+        require_resolved(0.1, variance=0.0, bias=1e-3, error=0.0)

@@ -7,11 +7,13 @@ the error is the sum over all parts. A part is refined whose error is large.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import Part
+from nonsmooth.progress import counter
 
 
 @dataclass(frozen=True)
@@ -50,13 +52,20 @@ def refine_each_part(
     -------
     Found
     """
-    settings, known = tuning.EACH_PART, {}
+    with counter("solutions") as advance:
 
-    def solution(at):
-        if at not in known:
-            known[at] = solve(at)
-        return known[at]
+        @cache
+        def solution(at):
+            found = solve(at)
+            advance(1)
+            return found
 
+        return _refined(parts, solution, met, tol)
+
+
+def _refined(parts, solution, met, tol):
+    """Refine with solutions that are not computed twice."""
+    settings = tuning.EACH_PART
     at = tuple(part.first for part in parts)
     before = np.zeros(len(parts))[:, None, None]
     while True:
