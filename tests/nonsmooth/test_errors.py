@@ -159,7 +159,9 @@ def test_the_default_is_answered_with_a_warning():
 
 def test_what_is_reached_of_another_quantity_is_no_result():
     """A formula whose gamma^2 misses its tolerance does not return gamma^2 as a probability."""
-    with pytest.raises(ToleranceError, match="2 has an error of 1") as refused:
-        with of_another_quantity():
-            refusal(result=2.0)()
+    with (
+        pytest.raises(ToleranceError, match="2 has an error of 1") as refused,
+        of_another_quantity(),
+    ):
+        refusal(result=2.0)()
     assert refused.value.result is None
