@@ -14,7 +14,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Rectangle
 
-BLACK, BLUE, ORANGE, SKY, GREEN = "#000000", "#0072B2", "#D55E00", "#56B4E9", "#009E73"
+from nonsmooth.plotting.style import BLACK, BLUE, ORANGE
+
 INK = {"color": BLACK, "linewidth": 1.2, "solid_capstyle": "butt"}
 STYLE = {
     "axes.spines.right": False,

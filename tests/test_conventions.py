@@ -12,7 +12,8 @@ from support import ROOT
 SOURCES = ("src", "workflow", "benchmarks", "examples", "tests")
 LONGEST_BODY = 60  # lines of a function without its docstring
 MOST_FILES = 12  # in a folder of the packages
-NAMED_TUPLES = {"_replace", "_fields", "_asdict", "_make"}  # public in spite of their names
+# public in spite of their names: of named tuples, and what notebooks call
+PUBLIC = {"_replace", "_fields", "_asdict", "_make", "_repr_html_", "_repr_latex_"}
 
 
 def files(*folders):
@@ -48,7 +49,7 @@ def defined(tree):
 def private_names(path):
     """Private names that a module takes from elsewhere, with their lines."""
     tree = parsed(path)
-    own = set(defined(tree)) | NAMED_TUPLES
+    own = set(defined(tree)) | PUBLIC
     package = ".".join(path.relative_to(ROOT / "src").parent.parts) if "src" in path.parts else ""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").rpartition(".")[0] != package:

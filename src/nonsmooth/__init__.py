@@ -17,6 +17,7 @@ What is studied: `Scene`, with the noises `White`, `Langevin`, `Hamiltonian`, `O
 - `state_crossing_probability`: of a threshold by the displacement or the velocity themselves
 - `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`: the limit, in which
   the integral is a Brownian motion
+- `plot`: a picture of what these return
 
 Results are `Estimate` objects or xarray datasets, with error estimates. Exceptions meant for the
 user are subclasses of `NonsmoothError`.

@@ -9,6 +9,7 @@ from .crossing.state.crossing import (
 from .errors import NonsmoothError as NonsmoothError
 from .estimate import Estimate as Estimate
 from .paths.simulation import simulate as simulate
+from .plotting.drawing import plot as plot
 from .scenes.noises import Hamiltonian as Hamiltonian
 from .scenes.noises import KanaiTajimi as KanaiTajimi
 from .scenes.noises import Langevin as Langevin

@@ -1,11 +1,15 @@
 """A value together with its error."""
 
+import html
+import math
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike
 
 from nonsmooth.errors import ToleranceError
+from nonsmooth.results import dataset
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,37 @@ class Estimate:
     error: float
     method: str
     seconds: float
+
+    def __str__(self) -> str:
+        return f"{self._digits()} +- {self.error:.1e} ({self.method}, {self.seconds:.2g} s)"
+
+    def _repr_html_(self) -> str:
+        """Summary for notebooks."""
+        return (
+            f"<b>{self._digits()}</b> ± {self.error:.1e}"
+            f"<br><small>{html.escape(self.method)}, {self.seconds:.2g} s</small>"
+        )
+
+    def _digits(self):
+        """Write the value with as many digits as its error leaves, and one more."""
+        if not 0 < self.error < math.inf or self.value == 0:
+            return f"{self.value:.12g}"
+        sure = math.floor(math.log10(abs(self.value))) - math.floor(math.log10(self.error))
+        return f"{self.value:.{min(max(sure + 2, 1), 16)}g}"
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return a dataset of `value` and `value_error`, which has the method `to_netcdf`."""
+        variables = {
+            "value": ((), self.value, "value"),
+            "value_error": ((), self.error, "error of the value"),
+        }
+        return dataset({}, variables, method=self.method, seconds=self.seconds)
+
+    @classmethod
+    def from_dataset(cls, data: xr.Dataset) -> "Estimate":
+        """Return the estimate of which `to_dataset` has made a dataset."""
+        value, error = float(data["value"]), float(data["value_error"])
+        return cls(value, error, str(data.attrs["method"]), float(data.attrs["seconds"]))
 
 
 def not_negative(value: ArrayLike, error: ArrayLike) -> tuple[np.ndarray, np.ndarray]:

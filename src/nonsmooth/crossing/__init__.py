@@ -14,5 +14,6 @@ or by counting paths. The manual has the derivations and the choice of the metho
 - `first_passage.distribution.deterministic_crossing`: the deterministic method.
 - `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting`.
 - `state.crossing.state_crossing_probability`: crossings of the state, not of an integral.
+- `curves.curves`: probabilities over horizons, as the public functions return them.
 - `tuning`: resolutions and switching points.
 """

@@ -11,7 +11,12 @@ near >= sqrt(T), because nothing cancels there, or where L >= 10 sqrt(T), becaus
 below rounding there. The modes are used elsewhere; all terms that matter have the same sign there.
 """
 
+from collections.abc import Callable
+from functools import wraps
+from typing import TypeVar
+
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf, erfc, erfcx
 
@@ -20,10 +25,29 @@ from nonsmooth.crossing import tuning
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes.thresholds import bounds
 
+Function = TypeVar("Function", bound=Callable)
 _SIZES = 1e-75, 1e75  # the fourth power of what is between is in double precision
 _TIMES = 1e-300, 1e75  # levels further than some roots of T are cut, so that T may be smaller
 
 
+def _keeping_coordinates(title: str) -> Callable[[Function], Function]:
+    """Make a function of arrays one that also takes xarray's, whose coordinates the result has."""
+
+    def decorate(function):
+        @wraps(function)
+        def evaluate(b, T, lower=None):
+            if not any(isinstance(one, xr.DataArray) for one in (b, T, lower)):
+                return function(b, T, lower)
+            lower = -xr.DataArray(b) if lower is None else lower
+            found = xr.apply_ufunc(function, b, T, lower)
+            return found.rename(None).assign_attrs(long_name=title, units="1")
+
+        return evaluate
+
+    return decorate
+
+
+@_keeping_coordinates("probability of a crossing")
 def brownian_crossing(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
     """Probability that W reaches b or the lower level before T, W_star of eq. (34) of the paper.
 
@@ -41,7 +65,8 @@ def brownian_crossing(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None
     numpy.ndarray
         Of the shape that the arguments broadcast to. The relative error is some units in the last
         place, and as many times the exponent where the value is exponentially small. The value is 0
-        at T = 0, and where it is below the smallest double.
+        at T = 0, and where it is below the smallest double. If an argument is an
+        xarray.DataArray, so is the result, with its coordinates.
 
     Raises
     ------
@@ -119,6 +144,7 @@ def _modes(b, T, width, weight):
     )
 
 
+@_keeping_coordinates("probability of no crossing")
 def brownian_survival(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None) -> np.ndarray:
     """Probability that W stays below b and above the lower level up to T, 1 - W_star.
 
@@ -139,6 +165,7 @@ def brownian_survival(b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None
     return path.chosen(early, path.modes(lambda n: 4 / (np.pi * n)), at_once=1.0)
 
 
+@_keeping_coordinates("density of the first crossing")
 def brownian_first_passage_density(
     b: ArrayLike, T: ArrayLike, lower: ArrayLike | None = None
 ) -> np.ndarray:

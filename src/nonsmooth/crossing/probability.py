@@ -27,6 +27,7 @@ from nonsmooth.checks import (
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
+from nonsmooth.crossing.curves import curves
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
 from nonsmooth.errors import (
@@ -165,15 +166,7 @@ def crossing_probability(
 
     def present(found):
         name, values, attributes = found
-        value, error = values["probability"], values["probability_error"]
-        limits = {"lower": np.maximum(value - error, 0), "upper": np.minimum(value + error, 1)}
-        values = limits | values
-        dimensions = ("threshold", "horizon")
-        result = xr.Dataset(
-            {name: (dimensions, value) for name, value in values.items()},
-            coords=_coordinates(thresholds) | {"horizon": horizons},
-            attrs={"method": name} | attributes,
-        )
+        result = curves(values, horizons, name, attributes, _coordinates(thresholds))
         return result if several else result.isel(threshold=0, drop=True)
 
     return answered(solve, present, tol_given=tol is not None)
@@ -182,8 +175,13 @@ def crossing_probability(
 def _coordinates(thresholds):
     """Return the coordinates of a dimension of thresholds."""
     lower, upper = thresholds.T
-    levels = dict(zip(LEVELS, ((("threshold",), side) for side in (lower, upper)), strict=True))
-    return levels | ({"threshold": upper} if np.all(lower == -upper) else {})
+    levels = {
+        name: ("threshold", side, f"{word} level")
+        for name, side, word in zip(LEVELS, (lower, upper), ("lower", "upper"), strict=True)
+    }
+    if np.all(lower == -upper):
+        levels["threshold"] = "threshold", upper, "threshold b"
+    return levels
 
 
 def _by(method, given):

@@ -29,7 +29,20 @@ from nonsmooth.paths.resolution import (
 )
 from nonsmooth.paths.sampling import PRECISIONS, Sampling
 from nonsmooth.paths.schemes import registry
+from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_random
+from nonsmooth.scenes.symbols import TITLES
+
+_TITLES = {
+    f"{name}{suffix}": f"{what}{name} of int g"
+    for name in ("mean", "variance")
+    for suffix, what in {
+        "": "",
+        "_error": "standard error of the ",
+        "_bias": "bias of the time step in the ",
+        "_bias_error": "standard error of the bias in the ",
+    }.items()
+}
 
 
 def simulate(
@@ -116,9 +129,10 @@ def simulate(
 def _paths(scene, times, sampling):
     kept = paths_at(scene, times, sampling)
     names = [*scene.state, "delta"]
-    return xr.Dataset(
-        {name: (("path", "time"), kept[:, i].T) for i, name in enumerate(names)},
-        coords={"time": np.concatenate([[0.0], times])},
+    titles = TITLES | {"delta": "int g"}
+    return dataset(
+        {"time": ("time", np.concatenate([[0.0], times]), "time")},
+        {name: (("path", "time"), kept[:, i].T, titles[name]) for i, name in enumerate(names)},
     )
 
 
@@ -131,8 +145,9 @@ def _statistics(scene, times, sampling):
         found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
     last = (found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))
     require_resolved(sampling.step, *last)
-    return xr.Dataset(
-        {name: ("time", values) for name, values in found.items()}, coords={"time": times}
+    return dataset(
+        {"time": ("time", times, "time")},
+        {name: ("time", values, _TITLES[name]) for name, values in found.items()},
     )
 
 

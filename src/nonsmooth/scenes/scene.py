@@ -1,6 +1,7 @@
 """A scene: mechanical model + noise + potential + damping + penalization + observable."""
 
 import difflib
+import html
 import itertools
 import math
 import warnings
@@ -22,7 +23,7 @@ from nonsmooth.checks import (
     require_positive,
 )
 from nonsmooth.errors import AssumptionWarning, SceneError, quoted
-from nonsmooth.scenes import noises, regularity, symbols, tuning
+from nonsmooth.scenes import equations, noises, regularity, symbols, tuning
 from nonsmooth.scenes.formulas import ODD, parity, parse, require_slope, vectorised
 from nonsmooth.scenes.models.model import Model
 from nonsmooth.scenes.models.registry import MODELS
@@ -375,6 +376,44 @@ class Scene:
                 )
             return sympy.sign(symbols.y)
         return self._with_numbers(self.observable_expression)
+
+    def _written(self):
+        """Return the equations that define the scene."""
+        potential = sympy.Eq(sympy.Symbol("U"), self.potential_expression, evaluate=False)
+        lines = equations.of_motion(
+            self.mechanics, self.noise, self.potential_expression, self.damping
+        )
+        force = equations.PENALTY_FORCE(self.mechanics.argument)
+        if math.isfinite(self.n):
+            own = equations.plain(self._with_numbers(self.mechanics.penalty_force))
+            lines.append(sympy.Eq(force, own, evaluate=False))
+        if self.potential_expression != 0:
+            lines.append(potential)
+        g = force if self.observes_penalty_force else self.observable_expression
+        return [*lines, sympy.Eq(sympy.Symbol("g"), g, evaluate=False)]
+
+    def _title(self):
+        """Say in words what the equations leave out."""
+        begun = ", ".join(f"{name} = {value:g}" for name, value in self.start.items())
+        n = "the non-smooth limit" if math.isinf(self.n) else f"n = {self.n:g}"
+        return f"{self.mechanics.title}, {self.noise.title}, {n}, from {begun or 'rest'}"
+
+    def _repr_html_(self) -> str:
+        """Summary for notebooks: the equations of motion in MathML."""
+        lines = "".join(
+            f"<div style='margin: 0.4em 0'>{equations.mathml(line)}</div>"
+            for line in self._written()
+        )
+        return f"<div><b>{html.escape(self._title())}</b>{lines}</div>"
+
+    def _repr_latex_(self) -> str:
+        """Summary for notebooks that are printed."""
+        lines = r" \\ ".join(
+            f"{equations.latex(line.lhs)} &= {equations.latex(line.rhs)}"
+            for line in self._written()
+        )
+        title = self._title().replace("_", r"\_")
+        return rf"$$\begin{{aligned}} & \text{{{title}}} \\ {lines} \end{{aligned}}$$"
 
     def _with_numbers(self, expression):
         return expression.subs(

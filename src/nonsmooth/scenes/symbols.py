@@ -8,4 +8,6 @@ import sympy
 
 zeta, eta, y, x = sympy.symbols("zeta eta y x", real=True)
 STATE_VARIABLES = (zeta, eta, y, x)
+# what they are called in captions
+TITLES = {"zeta": "noise zeta", "eta": "noise eta", "y": "velocity y", "x": "displacement x"}
 damping = sympy.Symbol("C_b", positive=True)

@@ -24,10 +24,11 @@ from nonsmooth.grids.mesh.edges import kinks
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.line import quadrature
 from nonsmooth.refine import until_agreement
+from nonsmooth.results import dataset
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
 from nonsmooth.scenes.scene import Scene, require_random
-from nonsmooth.scenes.symbols import STATE_VARIABLES
+from nonsmooth.scenes.symbols import STATE_VARIABLES, TITLES
 from nonsmooth.statistics import tuning
 
 
@@ -190,9 +191,17 @@ def _affordable(scene: Scene, grid: Grid) -> Iterator[Grid]:
 
 
 def _dataset(found, error, points):
-    variables = {f"density_{'_'.join(key)}": (key, value) for key, value in found.items()}
-    variables |= {f"density_{'_'.join(key)}_error": ((), value) for key, value in error.items()}
-    return xr.Dataset(variables, coords={key[0]: points[key[0]] for key in found if len(key) == 1})
+    coords = {key[0]: (key, points[key[0]], TITLES[key[0]]) for key in found if len(key) == 1}
+    variables = {}
+    for key, value in found.items():
+        name, title = f"density_{'_'.join(key)}", f"density of the {_titles(key)}"
+        variables[name] = key, value, title
+        variables[f"{name}_error"] = (), error[key], f"error of the {title}"
+    return dataset(coords, variables)
+
+
+def _titles(names):
+    return " and the ".join(TITLES[name] for name in names)
 
 
 def _require_finite(scene):

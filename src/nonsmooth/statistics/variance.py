@@ -20,6 +20,7 @@ from nonsmooth.estimate import not_negative
 from nonsmooth.line import eigenfunctions
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.refine import until_agreement
+from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_scene
 from nonsmooth.statistics import moments_on_grids, tuning
 from nonsmooth.statistics.asymptotic_variance import METHODS
@@ -118,12 +119,13 @@ def _solved(solve, scene, times, tol):
 def _dataset(times, found, error, method):
     (w, v), (w_error, v_error) = found, error
     v, v_error = not_negative(v, v_error)
-    variables = {"w": w, "w_error": w_error, "v": v, "v_error": v_error}
-    return xr.Dataset(
-        {name: ("time", values) for name, values in variables.items()},
-        coords={"time": times},
-        attrs={"method": method},
-    )
+    variables = {
+        "w": ("time", w, "mean of int g - E g"),
+        "w_error": ("time", w_error, "error of the mean"),
+        "v": ("time", v, "variance of int g"),
+        "v_error": ("time", v_error, "error of the variance"),
+    }
+    return dataset({"time": ("time", times, "time")}, variables, method=method)
 
 
 def _solver(scene: Scene) -> Callable | None:

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 import nonsmooth
+from nonsmooth import results
 from reproduction.errors import ArtifactError
 from reproduction.jobs.files import write_whole
 
@@ -35,15 +36,7 @@ def dataset(title: str, summary: str, coords: Mapping, variables: Mapping) -> xr
     xarray.Dataset
         All units "1": the paper's models are dimensionless.
     """
-
-    def entries(items):
-        return {
-            name: (dims, values, {"long_name": long_name, "units": "1"})
-            for name, (dims, values, long_name) in items.items()
-        }
-
-    attrs = {"title": title, "summary": summary}
-    return xr.Dataset(entries(variables), coords=entries(coords), attrs=attrs)
+    return results.dataset(coords, variables, title=title, summary=summary)
 
 
 def provenance(rule: str, parameters: Mapping) -> str:

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 import matplotlib as mpl
 
@@ -15,35 +14,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+# the scripts take the style from here
+from nonsmooth.plotting.style import BLACK as BLACK
+from nonsmooth.plotting.style import BLUE as BLUE
+from nonsmooth.plotting.style import GREEN as GREEN
+from nonsmooth.plotting.style import LOOKS as LOOKS
+from nonsmooth.plotting.style import ORANGE as ORANGE
+from nonsmooth.plotting.style import SKY as SKY
+from nonsmooth.plotting.style import STYLE as STYLE
+from nonsmooth.plotting.style import TEXT_WIDTH as TEXT_WIDTH
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs.files import write_whole
 from reproduction.jobs.job import Task, inputs, job
-
-TEXT_WIDTH = 6.3  # inches
-# Wong's colour-blind-safe palette, ordered so that neighbours also differ in grey
-BLACK, BLUE, ORANGE, SKY, GREEN = "#000000", "#0072B2", "#D55E00", "#56B4E9", "#009E73"
-# looks of the curves of a sweep over p
-LOOKS = [(GREEN, (0, (1, 2))), (SKY, (0, (3, 1, 1, 1, 1, 1))), (BLUE, "-."), (BLACK, "--")]
-
-STYLE: Any = {
-    "axes.grid": True,
-    "axes.linewidth": 0.6,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "figure.constrained_layout.use": True,
-    "font.family": "STIXGeneral",
-    "font.size": 8,
-    "grid.color": "0.9",
-    "grid.linewidth": 0.5,
-    "legend.fontsize": 7.5,
-    "legend.frameon": False,
-    "lines.linewidth": 1.0,
-    "mathtext.fontset": "stix",
-    "pdf.fonttype": 42,
-    "savefig.dpi": 200,
-}
 
 
 def draw(plot: Callable, task: Task) -> None:

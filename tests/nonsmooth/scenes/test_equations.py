@@ -1,6 +1,7 @@
 """The typeset equations are the equations that the kernels integrate."""
 
 import itertools
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -86,3 +87,21 @@ def test_table_3_potential_gives_the_obstacle_force():
         assert float(difference.subs({x: value, n: number})) == 0
     assert obstacle.velocity_penalty == obstacle.displacement_penalty == 0
     assert FRICTION.velocity_penalty.free_symbols == {y, n}
+
+
+@pytest.mark.parametrize("n", [100, 3.7, float("inf")])
+@pytest.mark.parametrize("model", ["elasto_plastic", "friction", "obstacle"])
+@pytest.mark.parametrize("noise", NOISES)
+def test_a_notebook_shows_the_equations(model, noise, n):
+    """MathML that an XML parser reads, and LaTeX that matplotlib's parser does, but for cases."""
+    scene = ns.Scene(model, NOISES[noise], n=n, potential="x**2/2 + 0.3*cos(x)", observable="x")
+    shown = ElementTree.fromstring(scene._repr_html_().replace("&InvisibleTimes;", "&#x2062;"))
+    space = "{http://www.w3.org/1998/Math/MathML}"
+    assert len(shown.findall(f".//{space}math")) == len(scene.variables) + 2 + (n < float("inf"))
+    rates = [over.findtext(f"{space}mi") for over in shown.iter(f"{space}mover")]
+    names = {"zeta": "ζ", "eta": "η"}
+    assert [r for r in rates if r != "W"] == [names.get(s.name, s.name) for s in scene.variables]
+    assert "piecewise" not in scene._repr_html_()
+    text = scene._repr_latex_()
+    assert text.count(r"\dot{W}") == 1
+    assert text.count("{") == text.count("}")

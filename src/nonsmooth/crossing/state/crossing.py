@@ -17,6 +17,7 @@ from nonsmooth.checks import (
     require_threads,
     require_tolerance,
 )
+from nonsmooth.crossing.curves import curves
 from nonsmooth.crossing.state import line, tuning
 from nonsmooth.crossing.state.problem import state_crossing
 from nonsmooth.crossing.state.sampled import sampled_state_crossing
@@ -126,13 +127,7 @@ def state_crossing_probability(
 
     def present(found):
         name, values, attributes = found
-        value, error = values["probability"], values["probability_error"]
-        limits = {"lower": np.maximum(value - error, 0), "upper": np.minimum(value + error, 1)}
-        return xr.Dataset(
-            {name: ("horizon", value) for name, value in (limits | values).items()},
-            coords={"horizon": times},
-            attrs={"method": name} | attributes,
-        )
+        return curves(values, times, name, attributes)
 
     return answered(solve, present, tol_given=tol is not None)
 

@@ -1,0 +1,203 @@
+"""`plot` draws the results of all public functions by one convention, that of `results.dataset`."""
+
+from collections.abc import Mapping
+from numbers import Real
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from nonsmooth.errors import NonsmoothError, SceneError, quoted
+from nonsmooth.estimate import Estimate
+from nonsmooth.plotting.style import BLACK, BLUE, GREEN, ORANGE, SKY, STYLE, TEXT_WIDTH
+from nonsmooth.results import described_by, main_variables
+
+CURVES = [(BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (BLACK, (0, (1, 1.5))), (SKY, (0, (5, 1)))]
+MOST_CURVES = 12  # over one dimension for the values of another; more are drawn as a map
+PANEL_HEIGHT = 2.3  # inches
+
+
+def plot(result: Any) -> dict[str, Any]:
+    """Draw results, in the style of the paper.
+
+    Parameters
+    ----------
+    result : xarray.Dataset or xarray.DataArray or Estimate or dict
+        What a function of `nonsmooth` returns. Or several of these, all of the same kind, by the
+        names that the legend gives them; the names of estimates may be numbers.
+
+    Returns
+    -------
+    dict
+        From the names of the variables to the panels, which are matplotlib Axes. There is a panel
+        for each variable: curves over one dimension with the band of their errors, or between
+        `lower` and `upper`; paths; maps over two dimensions, of several results by contours. The
+        estimates share the panel ``"value"``.
+
+    Raises
+    ------
+    SceneError
+        If it is no such result.
+    NonsmoothError
+        If matplotlib is not installed.
+    """
+    try:
+        import matplotlib as mpl
+        import matplotlib.pyplot as plt
+    except ImportError:
+        raise NonsmoothError(
+            "pictures need matplotlib; install it by pip install matplotlib"
+        ) from None
+    several = isinstance(result, Mapping) and not isinstance(result, xr.Dataset)
+    results = dict(result) if several else {"": result}
+    with mpl.rc_context(STYLE):
+        if results and all(isinstance(one, Estimate) for one in results.values()):
+            _, panel = plt.subplots(figsize=(0.6 * TEXT_WIDTH, PANEL_HEIGHT))
+            _draw_estimates(panel, results)
+            return {"value": panel}
+        found = {label: _dataset(one) for label, one in results.items()}
+        names = [name for data in found.values() for name in main_variables(data)]
+        names = list(dict.fromkeys(names))
+        if not names:
+            raise _no_result(result)
+        panels = _panels(plt, names)
+        for name, panel in panels.items():
+            for k, (label, data) in enumerate(found.items()):
+                if name in data:
+                    _draw(panel, data, name, k, str(label), len(found) > 1)
+            if panel.get_legend_handles_labels()[1]:
+                panel.legend()
+    return panels
+
+
+def _no_result(value):
+    return SceneError(
+        f"what is to be drawn is {quoted(value)}; give what a function of nonsmooth returns, or a "
+        "dict of names and such results"
+    )
+
+
+def _dataset(result):
+    if isinstance(result, xr.DataArray):
+        result = result.to_dataset(name=result.name or "values")
+    if not isinstance(result, xr.Dataset):
+        raise _no_result(result)
+    return result
+
+
+def _panels(plt, names):
+    """Make a panel for each name, in up to three columns."""
+    columns = min(len(names), 3 if len(names) > 4 else 2)
+    rows = -(-len(names) // columns)
+    width = TEXT_WIDTH * (0.6 if columns == 1 else 1)
+    figure, axes = plt.subplots(rows, columns, figsize=(width, rows * PANEL_HEIGHT), squeeze=False)
+    for unused in axes.flat[len(names) :]:
+        figure.delaxes(unused)
+    return dict(zip(names, axes.flat, strict=False))
+
+
+def _draw(panel, data, name, k, label, several):
+    """Draw a variable of the k-th result into its panel."""
+    values = data[name].squeeze()
+    axes = [dim for dim in values.dims if dim in data.coords]
+    if values.ndim > 2 or not axes:
+        raise SceneError(
+            f"{name} has the dimensions ({', '.join(map(str, values.dims))}); choose a part with "
+            "one or two that have coordinates, by its method isel"
+        )
+    if values.ndim == 1:
+        _draw_curve(panel, data, values, CURVES[k % len(CURVES)], label)
+        return
+    over = axes[0] if len(axes) == 1 else axes[int(np.argmax(values.shape))]
+    (other,) = set(values.dims) - {over}
+    numbers = [c for c in data.coords if data[c].dims == (other,)]
+    if not numbers:
+        _draw_paths(panel, values.transpose(over, other), CURVES[k % len(CURVES)], label)
+    elif data.sizes[other] <= MOST_CURVES:
+        for j in range(data.sizes[other]):
+            part = data.isel({other: j})
+            parts = [f"{c} = {float(part[c]):g}" for c in numbers if c == other or len(axes) == 1]
+            text = ", ".join(filter(None, [label, *parts]))
+            look = CURVES[(k + j) % len(CURVES)]
+            _draw_curve(panel, part, part[name].squeeze(), look, text)
+    else:
+        _draw_map(panel, data, values, CURVES[k % len(CURVES)][0] if several else None, label)
+
+
+def _draw_curve(panel, data, values, look, label):
+    colour, dashes = look
+    (over,) = values.dims
+    points = data[over].values
+    if limits := _limits(data, values):
+        panel.fill_between(points, *limits, color=colour, alpha=0.25, linewidth=0)
+    panel.plot(points, values, color=colour, linestyle=dashes, label=label or None)
+    panel.set(xlabel=_title(data[over]), ylabel=_title(values))
+
+
+def _limits(data, values):
+    """Return the ends of the band about a curve, None if no error is known."""
+    about = described_by(data, values.name)
+    if {"lower", "upper"} <= set(about):
+        return data["lower"].squeeze(), data["upper"].squeeze()
+    if f"{values.name}_error" in about:
+        error = data[f"{values.name}_error"].squeeze()
+        return values - error, values + error
+    return None
+
+
+def _draw_paths(panel, values, look, label):
+    colour, dashes = look
+    (over, _), many = values.dims, values.shape[1]
+    lines = panel.plot(
+        values[over],
+        values,
+        color=colour,
+        linestyle=dashes,
+        linewidth=0.8,
+        alpha=max(0.15, min(1.0, 5 / many)),
+    )
+    lines[0].set_label(label or None)
+    panel.set(xlabel=_title(values[over]), ylabel=_title(values))
+
+
+def _draw_map(panel, data, values, colour, label):
+    """Fill the levels of a map, or draw them in a colour."""
+    down, across = values.dims
+    grid = data[across].values, data[down].values, values.values
+    if colour is None:
+        filled = panel.contourf(*grid, 12, cmap="viridis")
+        bar = panel.figure.colorbar(filled, ax=panel)
+        bar.outline.set_visible(False)
+    else:
+        panel.contour(*grid, 8, colors=colour, linewidths=0.8)
+        panel.plot([], [], color=colour, label=label)
+    panel.set(xlabel=_title(data[across]), ylabel=_title(data[down]), title=_title(values))
+    panel.title.set_size(8)
+
+
+def _draw_estimates(panel, estimates):
+    numbers = all(isinstance(name, Real) for name in estimates)
+    places = list(estimates) if numbers else range(len(estimates))
+    values = [one.value for one in estimates.values()]
+    panel.errorbar(
+        places,
+        values,
+        [one.error for one in estimates.values()],
+        color=BLUE,
+        marker="o",
+        markersize=3,
+        linestyle="none",
+        capsize=2,
+    )
+    panel.set_ylabel("value")
+    if not numbers:
+        texts = [f"{name}\n{one.method}".strip() for name, one in estimates.items()]
+        panel.set_xticks(places, texts)
+        panel.set_xlim(-0.5, len(values) - 0.5)
+
+
+def _title(variable):
+    """Return the long name of a variable with its units, unless it has none."""
+    title = variable.attrs.get("long_name", variable.name)
+    units = variable.attrs.get("units", "1")
+    return title if units == "1" else f"{title} [{units}]"
