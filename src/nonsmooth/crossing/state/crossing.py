@@ -18,7 +18,7 @@ from nonsmooth.checks import (
     require_tolerance,
 )
 from nonsmooth.crossing.curves import curves
-from nonsmooth.crossing.state import line, tuning
+from nonsmooth.crossing.state import line, plane, tuning
 from nonsmooth.crossing.state.problem import state_crossing
 from nonsmooth.crossing.state.sampled import sampled_state_crossing
 from nonsmooth.errors import SceneError, answered, first_answer
@@ -57,14 +57,15 @@ def state_crossing_probability(
     horizons : array_like, shape (k,)
         Increasing T > 0, "1".
     method : {"monte_carlo", "deterministic"}, optional
-        ``"deterministic"`` is for a variable that is a state by itself: y where neither a potential
-        nor colored noise acts, and eta of Langevin noise. Unless given, it is chosen for these, and
-        ``"monte_carlo"`` for all others or if `step`, `paths` or `precision` are given.
+        ``"deterministic"`` is for a variable that is a state by itself, as y where neither a
+        potential nor colored noise acts, or with one other variable and a finite n. Unless given,
+        it is chosen for these, and ``"monte_carlo"`` for all others, with two variables if `tol`
+        is so loose that it is faster, and if `step`, `paths` or `precision` are given.
     tol : float, optional
-        Absolute error wanted; 1e-8 for ``"deterministic"`` and 1e-2 for ``"monte_carlo"`` unless
-        given. By Monte Carlo the number of paths and the time step follow from it, unless they are
-        given: three standard errors are at most three quarters of `tol`, and the bias of the step
-        is at most a quarter.
+        Absolute error wanted; unless given, 1e-8 and 1e-4 for ``"deterministic"`` with one and two
+        variables, and 1e-2 for ``"monte_carlo"``. By Monte Carlo the number of paths and the time
+        step follow from it, unless they are given: three standard errors are at most three quarters
+        of `tol`, and the bias of the step is at most a quarter.
     step : float, optional
         Longest time step, "1"; ``"monte_carlo"`` only.
     paths : int, optional
@@ -132,11 +133,22 @@ def state_crossing_probability(
     return answered(solve, present, tol_given=tol is not None)
 
 
+def _solver(asked):
+    """Return the deterministic solver and its usual tolerance, None if there is none."""
+    if line.applies(asked):
+        return line.solved, tuning.LINE.tolerance
+    return (plane.solved, tuning.PLANE.tolerance) if plane.applies(asked) else None
+
+
 def _fitting(asked, given):
     """Name the methods to try in turn."""
-    if not line.applies(asked) or {"step", "paths", "precision"} & given.keys():
+    if _solver(asked) is None or {"step", "paths", "precision"} & given.keys():
         return ["monte_carlo"]
-    sampled = given.get("tol", MONTE_CARLO.tolerance) >= MONTE_CARLO.tolerance
+    if "tol" not in given:
+        return ["deterministic", "monte_carlo"]
+    if not line.applies(asked) and given["tol"] >= tuning.PLANE.faster_sampled:
+        return ["monte_carlo", "deterministic"]
+    sampled = given["tol"] >= tuning.SAMPLED.least_tolerance
     return ["deterministic", "monte_carlo"] if sampled else ["deterministic"]
 
 
@@ -149,19 +161,19 @@ def _taken(name, given):
 
 
 def _deterministic(asked, times, tol=None):
-    if not line.applies(asked):
+    solver = _solver(asked)
+    if solver is None:
         raise SceneError(
-            f"crossings of {asked.variable} are solved where it is a state by itself, not for "
-            f"({', '.join(asked.scene.state)}) with {asked.scene.noise.title}; use "
-            "method='monte_carlo'"
+            f"crossings of {asked.variable} are solved for one or two variables with finite n, not "
+            f"for ({', '.join(asked.scene.state)}) with {asked.scene.noise.title} at n = "
+            f"{asked.scene.n:g}; use method='monte_carlo'"
         )
+    solve, usual = solver
 
     def present(found):
         return {"probability": found[0], "probability_error": found[1]}, {}
 
-    return answered(
-        lambda: line.solved(asked, times, tuning.LINE.tolerance if tol is None else tol), present
-    )
+    return answered(lambda: solve(asked, times, usual if tol is None else tol), present)
 
 
 # checks of the parameters that only some methods have

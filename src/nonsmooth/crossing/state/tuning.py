@@ -26,6 +26,40 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Plane:
+    """The backward equation of two variables on tensor grids."""
+
+    tolerance: float = 1e-4  # chosen: absolute error unless the user asks for another
+    highest: int = 3  # chosen: last level, a minute or some
+    safety: float = 2.0  # chosen: the error is so many times the change by the last level
+    gain: float = 20.0  # chosen: largest factor by which a level reduces the error
+    share: float = 0.7  # chosen: part of the tolerance for the levels; the rest is for the box
+    least: float = 1e-11  # derived: rounding of the steps
+    spare: float = (
+        6.0  # chosen: relative density at the end of the box, exp(-6) times the tolerance
+    )
+    margin: float = 0.2  # chosen: by which the box is enlarged, to see whether its size matters
+    around: float = 1.5  # chosen: the box ends at so many times the start, or farther out
+    samples: int = 401  # chosen: points at which the height of the potential is looked for
+    degree: int = 3  # chosen: polynomial degree on level 0
+    elements: int = 6  # chosen: least number of elements of each variable
+    layers: int = 3  # chosen: ever smaller elements on level 0
+    # chosen: of neighbouring distances from a level and from the point where the flow turns. The
+    # solution there depends on (distance from the level) / (distance from the point)^3
+    ratio: float = 6.0
+    turn_ratio: float = 2.5
+    rough_ratio: float = 3.0  # chosen: the same from a level of the variable that noise drives
+    closest: float = 1e-7  # chosen: smallest element, over the size of the box
+    first: float = 1e-2  # chosen: first step, over the first time
+    per_length: float = 4.0  # chosen: steps on level 0 before their length is doubled
+    # chosen: longest step on level 0 up to late times; later there are so many before it is doubled
+    longest: float = 0.2
+    late: float = 60.0
+    # fitted: tolerance from which on paths, some seconds, are faster than two levels
+    faster_sampled: float = 2e-3
+
+
+@dataclass(frozen=True)
 class Sampled:
     """Monte Carlo."""
 
@@ -35,8 +69,10 @@ class Sampled:
     order: float = 1.0
     # chosen: largest step of rough paths, as the square of a part of the way to the nearer level
     part_of_way: float = 0.5
+    least_tolerance: float = 1e-3  # chosen: paths replace a solver that fails, within minutes
     attempts: int = 4  # chosen: samples, each with the paths and the step that the last asked for
 
 
 LINE = Line()
+PLANE = Plane()
 SAMPLED = Sampled()

@@ -1,0 +1,74 @@
+"""First passage of two variables, against the kinetic equation, one variable and Monte Carlo."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import nonsmooth as ns
+from references import FALSE_ALARM, FRICTION, OBSTACLE, PLASTIC
+
+HORIZONS = np.array([1.0, 3.0, 10.0])
+
+
+def solved(scene, variable, levels, tol):
+    """Solve for the probabilities."""
+    return ns.state_crossing_probability(
+        scene, variable, levels, HORIZONS, method="deterministic", tol=tol
+    )
+
+
+def test_displacement_is_the_integral_of_the_velocity():
+    """Without a potential x = int y, whose crossings are solved in quite another way.
+
+    The kinetic equation is right to 1e-7.
+    """
+    exact = ns.crossing_probability(FRICTION, 0.5, HORIZONS, method="deterministic")["probability"]
+    run = solved(FRICTION, "x", 0.5, 1e-3)
+    assert np.all(np.abs(run["probability"] - exact) <= run["probability_error"])
+    assert np.all(run["probability_error"] <= 1e-3)
+
+
+def test_velocity_does_not_see_a_weak_spring():
+    """With U = 1e-6 x^2 / 2 the velocity is that of one variable, up to 1e-6 of the distance x."""
+    weak = ns.Scene("elasto_plastic", n=20, potential="5e-7*x**2")
+    exact = ns.state_crossing_probability(ns.Scene("elasto_plastic"), "y", 1.2, HORIZONS)
+    run = solved(weak, "y", 1.2, 1e-3)
+    gap = np.abs(run["probability"] - exact["probability"])
+    assert np.all(gap <= run["probability_error"] + 1e-5)
+
+
+@pytest.mark.parametrize(
+    ("scene", "variable", "levels"),
+    [
+        (PLASTIC.with_n(20), "y", 1.2),
+        (PLASTIC.with_n(20), "x", 0.7),
+        (OBSTACLE.with_n(np.inf), "x", 1.0),
+        pytest.param(OBSTACLE, "y", (-np.inf, 1.3), marks=pytest.mark.slow),
+        pytest.param(ns.Scene("friction", "langevin", n=5), "y", 0.3, marks=pytest.mark.slow),
+        (ns.Scene("friction", ns.KanaiTajimi(2.0, 0.5)), "eta", (-0.6, 0.9)),
+    ],
+)
+def test_paths(scene, variable, levels):
+    """Counted paths agree, within their errors and those that are stated."""
+    run = solved(scene, variable, levels, 1e-2)
+    counted = ns.state_crossing_probability(
+        scene, variable, levels, HORIZONS, paths=50_000, step=0.02, seed=3
+    )
+    sure = stats.norm.isf(FALSE_ALARM / 2 / len(HORIZONS))
+    allowed = run["probability_error"] + np.abs(counted["step_bias"])
+    allowed += sure * np.hypot(counted["standard_error"], counted["step_bias_error"])
+    assert np.all(np.abs(run["probability"] - counted["probability"]) <= allowed)
+
+
+def test_loose_tolerances_cost_paths_only():
+    """What is asked loosely is counted, which takes a second."""
+    run = ns.state_crossing_probability(PLASTIC, "x", 0.7, HORIZONS, tol=1e-2)
+    assert run.attrs["method"] == "monte_carlo"
+
+
+@pytest.mark.slow
+def test_tight_tolerance():
+    """1e-5 is met, and the loose answer's error contains the tight one."""
+    loose, tight = (solved(PLASTIC.with_n(20), "x", 0.7, tol) for tol in (1e-3, 1e-5))
+    gap = np.abs(loose["probability"] - tight["probability"])
+    assert np.all(gap <= loose["probability_error"])
