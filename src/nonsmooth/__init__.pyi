@@ -10,6 +10,8 @@ from .errors import NonsmoothError as NonsmoothError
 from .estimate import Estimate as Estimate
 from .paths.simulation import simulate as simulate
 from .plotting.drawing import plot as plot
+from .reliability.quantiles import crossing_threshold as crossing_threshold
+from .reliability.quantiles import failure_time as failure_time
 from .scenes.noises import Hamiltonian as Hamiltonian
 from .scenes.noises import KanaiTajimi as KanaiTajimi
 from .scenes.noises import Langevin as Langevin

@@ -1,0 +1,10 @@
+"""Reliability: what follows from crossing probabilities, with errors that follow from theirs.
+
+The derivations are in `docs/methods/reliability.md`.
+
+- `quantiles.crossing_threshold`: the threshold that is crossed with a given probability;
+  `quantiles.failure_time`: the time by which it is, such as the median time to failure.
+- `roots`: where W takes a value, with limits from the limits of W.
+- `reach`: how far int g gets, with which a search begins.
+- `tuning`: resolutions.
+"""

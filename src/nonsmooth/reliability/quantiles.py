@@ -1,0 +1,325 @@
+"""The threshold, and the time, at which the crossing probability takes a given value."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from nonsmooth.checks import (
+    require_choice,
+    require_increasing,
+    require_list,
+    require_positive,
+    require_seed,
+    require_threads,
+    require_tolerance,
+)
+from nonsmooth.crossing.first_passage.distribution import default_tolerance
+from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
+from nonsmooth.paths.tuning import MONTE_CARLO
+from nonsmooth.reliability import tuning
+from nonsmooth.reliability.reach import typical_reach
+from nonsmooth.reliability.roots import FALLING, RISING, Root, Values, root_on_grid, solved_root
+from nonsmooth.scenes.scene import Scene, require_random
+from nonsmooth.scenes.thresholds import bounds
+
+SIDES = {"both": (-1.0, 1.0), "upper": (-np.inf, 1.0), "lower": (-1.0, np.inf)}
+
+
+def crossing_threshold(
+    scene: Scene,
+    probability: ArrayLike,
+    horizons: ArrayLike,
+    p: float = 1.0,
+    sides: str = "both",
+    method: str | None = None,
+    tol: float | None = None,
+    step: float | None = None,
+    paths: int | None = None,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+    order: int | None = None,
+) -> xr.Dataset:
+    """Find the threshold that is crossed with a given probability by p T.
+
+    It is the quantile of the order 1 - P of the largest |int_0^t g| / sqrt(p) up to p T: the level
+    for which to design, if crossing it may have the probability P.
+
+    Parameters
+    ----------
+    scene : Scene
+    probability : float or array_like, shape (q,)
+        P, between 0 and 1.
+    horizons : array_like, shape (k,)
+        Increasing T > 0, "1".
+    p : float
+        Scale, as for `crossing_probability`.
+    sides : {"both", "upper", "lower"}
+        The threshold b > 0 stands for the levels -b and b, for b alone, or for -b alone.
+    method, step, paths, seed, threads, order
+        As for `crossing_probability`.
+    tol : float, optional
+        Absolute error wanted of W, as for `crossing_probability`. Unless given, it is at most a
+        tenth of P and of 1 - P.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `probability` and `horizon`, with the method among its attributes: `threshold`, b,
+        "1"; its error `threshold_error`; `lower` and `upper`, between which it is. They invert the
+        limits of W: at `lower` W is surely at least P, and at `upper` surely at most P. As for W,
+        they are 95 % confidence limits by Monte Carlo, and the error is then that of W over its
+        slope; otherwise it is the distance to the farther limit. A limit is 0 or inf where the
+        error of W leaves it open.
+
+    Raises
+    ------
+    SceneError, ToleranceError
+        As `crossing_probability`.
+    """
+    require_random(scene)
+    targets, horizons = _probabilities(probability), require_increasing("horizons", horizons)
+    p, shape = require_positive("p", p), np.array(SIDES[require_choice("sides", sides, SIDES)])
+    seed, threads = require_seed(seed), require_threads(threads)
+    given = {"method": method, "step": step, "paths": paths, "order": order}
+    ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
+
+    def reach(P, T):
+        return typical_reach(scene, p * T, P, seed, threads) / np.sqrt(p)
+
+    pairs = [(P, T) for P in targets for T in horizons]
+
+    def values(x, tol, column):
+        run = ask(np.outer(x, shape), horizons[column], tol)
+        return [run.isel(horizon=k) for k in range(run.sizes["horizon"])]
+
+    def curves(x, tol):
+        found = values(x, tol, slice(None))
+        return [found[k] for _ in targets for k in range(len(horizons))]
+
+    def curve(k, x, tol):
+        return values(x, tol, [k % len(horizons)])[0]
+
+    def present(roots):
+        parts = {
+            name: (("probability", "horizon"), part.reshape(len(targets), len(horizons)))
+            for name, part in zip(
+                ("threshold", "threshold_error", "lower", "upper"),
+                np.array(roots).T,
+                strict=True,
+            )
+        }
+        return xr.Dataset(
+            parts,
+            coords={"probability": targets, "horizon": horizons},
+            attrs={"sides": sides} | ask.attributes,
+        )
+
+    return answered(
+        lambda: ask.roots(
+            [P for P, _ in pairs], [reach(*pair) for pair in pairs], curves, curve, FALLING
+        ),
+        present,
+        tol_given=tol is not None,
+    )
+
+
+def failure_time(
+    scene: Scene,
+    threshold: float | tuple[float, float],
+    probability: ArrayLike = 0.5,
+    p: float = 1.0,
+    method: str | None = None,
+    tol: float | None = None,
+    step: float | None = None,
+    paths: int | None = None,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+    order: int | None = None,
+) -> xr.Dataset:
+    """Find the time by which a threshold is crossed with a given probability; 1/2: the median.
+
+    Parameters
+    ----------
+    scene : Scene
+    threshold : float or (float, float)
+        As for `crossing_probability`.
+    probability : float or array_like, shape (q,)
+        P, between 0 and 1; 1/2 unless given: the median time to failure.
+    p, method, step, paths, seed, threads, order
+        As for `crossing_probability`.
+    tol : float, optional
+        Absolute error wanted of W, as for `crossing_threshold`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `probability`, with the method among its attributes: `time`, T, "1", such that
+        W = P at the time p T; its error `time_error`; `lower` and `upper`, between which it is.
+        What they mean is told at `crossing_threshold`.
+
+    Raises
+    ------
+    SceneError, ToleranceError
+        As `crossing_probability`.
+    """
+    require_random(scene)
+    targets, pair = _probabilities(probability), np.array([bounds(threshold)])
+    p, seed, threads = require_positive("p", p), require_seed(seed), require_threads(threads)
+    given = {"method": method, "step": step, "paths": paths, "order": order}
+    ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
+
+    def guess(P):
+        start = tuning.SCALE.longest / scene.damping
+        far = np.sqrt(p) * np.min(np.abs(pair)) / typical_reach(scene, start, P, seed, threads)
+        return start * min(far, far**2) / p  # int g spreads like the root of the time, later on
+
+    def curves(x, tol):
+        return [ask(pair, x, tol).isel(threshold=0)] * len(targets)
+
+    def curve(_, x, tol):
+        return curves(x, tol)[0]
+
+    def present(roots):
+        names = ("time", "time_error", "lower", "upper")
+        return xr.Dataset(
+            {
+                name: ("probability", part)
+                for name, part in zip(names, np.array(roots).T, strict=True)
+            },
+            coords={"probability": targets},
+            attrs=ask.attributes,
+        )
+
+    return answered(
+        lambda: ask.roots(list(targets), [guess(P) for P in targets], curves, curve, RISING),
+        present,
+        tol_given=tol is not None,
+    )
+
+
+def _probabilities(values):
+    found = require_list("probability", values)
+    if not np.all((found > 0) & (found < 1)):
+        raise SceneError(f"probability is {quoted(values)}; give numbers between 0 and 1")
+    return found
+
+
+class _Question:
+    """What is asked of `crossing_probability`, again and again."""
+
+    def __init__(self, scene: Scene, given: dict, tol: float | None):
+        self._scene, self._given = scene, {k: v for k, v in given.items() if v is not None}
+        self._tol = None if tol is None else require_tolerance(tol)
+        self._refusal: str | None = None
+        self.attributes: dict = {}
+
+    def __call__(self, levels: np.ndarray, horizons: np.ndarray, tol: float | None) -> xr.Dataset:
+        """Return W; the refusal of a tolerance is noted."""
+        wanted = {} if tol is None else {"tol": tol}
+        try:
+            found = crossing_probability(self._scene, levels, horizons, **self._given, **wanted)
+        except ToleranceError as refused:
+            if not isinstance(refused.result, xr.Dataset):
+                raise
+            found, self._refusal = refused.result, str(refused)
+        self.attributes = found.attrs
+        return found
+
+    def tolerance(self, targets: list[float]) -> float | None:
+        """Tolerance of W, unless it is given; None for methods that take none."""
+        if self._given.get("method") in ("asymptotic", "corrected"):
+            return self._tol
+        if self._tol is not None:
+            return self._tol
+        share = tuning.SEARCH.share * min(min(P, 1 - P) for P in targets)
+        usual = default_tolerance(self._scene)
+        sampled = usual is None or self._is_sampled()
+        return min(share, MONTE_CARLO.tolerance if sampled or usual is None else usual)
+
+    def _is_sampled(self):
+        given = self._given
+        return given.get("method") == "monte_carlo" or bool({"step", "paths"} & given.keys())
+
+    def roots(
+        self,
+        targets: list[float],
+        guesses: list[float],
+        curves: Callable[[np.ndarray, float | None], list],
+        curve: Callable[[int, np.ndarray, float | None], Any],
+        sense: int,
+    ) -> list[Root]:
+        """Find where W takes the values `targets`.
+
+        By Monte Carlo all of them on the same paths, from `curves`, which returns W for each
+        target; otherwise one by one, from `curve`, which takes the number of the target.
+        """
+        tol = self.tolerance(targets)
+        sampled = self._is_sampled()
+        if not sampled and "method" not in self._given:  # the method follows from the scene
+            sampled = (
+                default_tolerance(self._scene) is None
+                or curve(0, np.array(guesses[:1]), tol).attrs["method"] == "monte_carlo"
+            )
+        if sampled:
+            self._given["method"] = "monte_carlo"
+            self._given.pop("order", None)
+            found = _on_grids(curves, targets, guesses, sense, tol)
+        else:
+            found = []
+            for k, (target, guess) in enumerate(zip(targets, guesses, strict=True)):
+                evaluate = partial(curve, k, tol=tol)
+                found.append(
+                    solved_root(lambda x, ask=evaluate: _values(ask(x)), target, guess, sense)
+                )
+        if self._refusal is not None:
+            raise ToleranceError(self._refusal, found)
+        return found
+
+
+def _values(run):
+    names = ("probability", "probability_error", "lower", "upper")
+    return Values(*(run[name].values for name in names))
+
+
+def _on_grids(curves, targets, guesses, sense, tol):
+    """Invert sampled probabilities on a rough grid around guesses, then on a fine one."""
+    grid = tuning.GRID
+    spread = grid.rough_factor
+    spans = [(guess / spread, guess * spread) for guess in guesses]
+    rough = _inverted(
+        partial(curves, tol=grid.rough_tolerance * tol), targets, spans, grid.rough_values, sense
+    )
+    spans = []
+    for root in rough:
+        more = (root.upper / root.lower) ** grid.margin
+        spans.append((root.lower / more, root.upper * more))
+    return _inverted(partial(curves, tol=tol), targets, spans, grid.values, sense)
+
+
+def _inverted(curves, targets, spans, count, sense):
+    """Invert on grids over spans, which are widened until they contain the limits."""
+    spans = list(spans)
+    for _ in range(tuning.GRID.attempts):
+        x = np.unique(np.concatenate([np.geomspace(*span, count) for span in spans]))
+        found = [
+            root_on_grid(x, _values(run), target, sense)
+            for run, target in zip(curves(x), targets, strict=True)
+        ]
+        if all(root.lower > 0 and root.upper < np.inf for root in found):
+            return found
+        for k, root in enumerate(found):
+            low, high = spans[k]
+            ratio = high / low
+            spans[k] = (
+                low if root.lower > 0 else low / ratio,
+                high if root.upper < np.inf else high * ratio,
+            )
+    raise ToleranceError(
+        "Monte Carlo does not bracket the probability asked for; choose a smaller tol, or one that "
+        "is nearer to 1/2"
+    )

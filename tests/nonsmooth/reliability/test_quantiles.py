@@ -1,0 +1,90 @@
+"""Thresholds and times at which W takes a value: they invert W, by every method."""
+
+import numpy as np
+import pytest
+from scipy import optimize
+
+import nonsmooth as ns
+from nonsmooth.errors import SceneError, ToleranceError
+from references import FRICTION, GAMMA2
+
+
+@pytest.mark.slow
+def test_deterministic_threshold_inverts_W_and_the_time_inverts_the_threshold():
+    """W at the limits is on either side of P, by more than its error; T is found again."""
+    asked = {"method": "deterministic", "tol": 1e-4}
+    found = ns.crossing_threshold(FRICTION, 0.1, 2.0, **asked).squeeze()
+    W = ns.crossing_probability(FRICTION, found[["lower", "threshold", "upper"]].to_array(), [2.0])
+    assert W["lower"][0, 0] > 0.1 > W["upper"][2, 0]
+    assert abs(W["probability"][1, 0] - 0.1) < 1e-4
+    assert 0 < found["threshold_error"] < 1e-3
+    time = ns.failure_time(FRICTION, float(found["threshold"]), 0.1, **asked).squeeze()
+    slack = 2 * float(found["threshold_error"] / found["threshold"])  # T ~ b^2, at most
+    assert time["lower"] * (1 - 2 * slack) < 2.0 < time["upper"] * (1 + 2 * slack)
+
+
+@pytest.mark.parametrize("sides", ["both", "upper", "lower"])
+def test_at_large_p_the_threshold_is_that_of_brownian_motion(sides):
+    """A closed root of W_star; its distance is at most that of kappa / sqrt(p) at p = 10^8."""
+    lower = None if sides == "both" else -np.inf
+    for P in (1e-5, 0.2, 0.9):
+        exact = optimize.brentq(
+            lambda b, P=P: float(ns.brownian_crossing(b, 3 * GAMMA2, lower)) - P, 1e-3, 10
+        )
+        for method, order in (("asymptotic", None), ("corrected", 1)):
+            found = ns.crossing_threshold(
+                FRICTION, P, 3.0, p=1e8, sides=sides, method=method, order=order
+            ).squeeze()
+            assert found["lower"] - 1e-4 < exact < found["upper"] + 1e-4
+            assert abs(found["threshold"] - exact) < 1e-4
+
+
+def test_sampled_threshold_and_time_agree_with_the_deterministic_ones():
+    """95 % limits by fixed seeds; the same paths serve several P and T."""
+    asked = {"probability": [0.1, 0.4], "horizons": [2.0, 4.0]}
+    sampled = ns.crossing_threshold(FRICTION, **asked, method="monte_carlo", seed=2, p=2.0)
+    exact = ns.crossing_threshold(FRICTION, **asked, p=2.0, method="corrected", order=3)
+    assert dict(sampled.sizes) == {"probability": 2, "horizon": 2}
+    assert np.all(sampled["lower"] < exact["upper"])
+    assert np.all(exact["lower"] < sampled["upper"])
+    assert np.all(sampled["upper"] / sampled["lower"] < 1.12)
+    median = ns.failure_time(FRICTION, 0.6, method="monte_carlo", seed=3)
+    solved = 4.630412  # by the deterministic method
+    assert median["lower"] < solved < median["upper"]
+    assert abs(float(median["time"][0]) - solved) < 4 * float(median["time_error"][0])
+
+
+def test_scenes_without_solver_are_sampled():
+    """Coloured noise and n = inf; the probability of the found threshold is the one asked for."""
+    scene = ns.Scene("elasto_plastic", "langevin", n=np.inf)
+    found = ns.crossing_threshold(scene, 0.2, 2.0, sides="upper").squeeze()
+    assert found.attrs["method"] == "monte_carlo"
+    level = (-np.inf, float(found["threshold"]))
+    W = ns.crossing_probability(scene, level, [2.0], seed=9).squeeze()
+    # two independent errors of 0.01, of three standard errors each
+    assert abs(W["probability"] - 0.2) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("ask", "cure"),
+    [
+        (lambda: ns.crossing_threshold(FRICTION, 0.0, 2.0), "between 0 and 1"),
+        (lambda: ns.crossing_threshold(FRICTION, [0.1, 1.0], 2.0), "between 0 and 1"),
+        (lambda: ns.crossing_threshold(FRICTION, 0.1, 2.0, sides="left"), "choose from both"),
+        (lambda: ns.failure_time(FRICTION, -0.6), "threshold > 0"),
+        (lambda: ns.failure_time(FRICTION, 0.6, "half"), "give numbers"),
+    ],
+)
+def test_bad_requests_are_refused(ask, cure):
+    """The error is one line with the cure."""
+    with pytest.raises(SceneError, match=cure):
+        ask()
+
+
+def test_a_tolerance_out_of_reach_is_refused_with_the_best_root():
+    """The corrected formula has an error of its own; the result has the limits it leaves."""
+    asked = {"method": "corrected", "order": 3, "tol": 1e-6}
+    with pytest.raises(ToleranceError, match="above tol") as refused:
+        ns.crossing_threshold(FRICTION, 0.2, 2.0, **asked)
+    found = refused.value.result.squeeze()
+    assert found["lower"] < found["threshold"] < found["upper"]

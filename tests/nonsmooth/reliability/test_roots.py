@@ -1,0 +1,64 @@
+"""Roots of a probability that is known with errors: limits that hold."""
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.reliability.roots import FALLING, RISING, Values, root_on_grid, solved_root
+
+
+def brownian(error, wrong, sense):
+    """W_star in b or in T, off by `wrong` times a stated error."""
+
+    def evaluate(x):
+        W = ns.brownian_crossing(x, 1.0) if sense == FALLING else ns.brownian_crossing(1.0, x)
+        shown = np.clip(W + wrong * error, 0, 1)
+        limits = np.clip(shown - error, 0, 1), np.clip(shown + error, 0, 1)
+        return Values(shown, np.full(len(x), error), *limits)
+
+    return evaluate
+
+
+def inside(root, target, sense):
+    """Whether W_star takes the value between the limits: it is monotone."""
+    exact = brownian(0.0, 0.0, sense)
+    ends = exact(np.array([root.lower, root.upper])).probability
+    return sense * ends[0] <= sense * target <= sense * ends[1]
+
+
+@pytest.mark.parametrize("sense", [RISING, FALLING])
+@pytest.mark.parametrize("wrong", [-1.0, 0.0, 0.9])
+@pytest.mark.parametrize("target", [1e-6, 0.02, 0.5, 0.97])
+def test_limits_hold_the_root_if_those_of_W_hold(target, wrong, sense):
+    """Errors from rounding to a third of P, from guesses that are off by a factor of 20."""
+    for relative in (1e-9, 1e-4, 0.3):
+        error = relative * min(target, 1 - target)
+        for guess in (0.05, 1.0, 20.0):
+            root = solved_root(brownian(error, wrong, sense), target, guess, sense)
+            assert 0 < root.lower <= root.value <= root.upper < np.inf
+            assert inside(root, target, sense)
+            # not much wider than twice the error of W, in terms of W
+            ends = brownian(0.0, 0.0, sense)(np.array([root.lower, root.upper])).probability
+            assert abs(ends[1] - ends[0]) < 9 * error + 1e-10
+
+
+@pytest.mark.parametrize("sense", [RISING, FALLING])
+def test_a_limit_stays_open_where_the_error_leaves_it_open(sense):
+    """An error of 0.3 around P = 0.1: W may be as small as it likes."""
+    root = solved_root(brownian(0.3, 0.0, sense), 0.1, 1.0, sense)
+    assert (root.lower == 0) if sense == RISING else np.isinf(root.upper)
+    assert np.isfinite(root.upper) if sense == RISING else root.lower > 0
+
+
+@pytest.mark.parametrize("sense", [RISING, FALLING])
+def test_limits_on_a_grid(sense):
+    """Noise of W is within its limits: the root is between points of the grid."""
+    rng, x = np.random.default_rng(3), np.geomspace(0.1, 3, 41)
+    exact = brownian(0.0, 0.0, sense)(x).probability
+    for _ in range(100):
+        target, error = rng.uniform(0.1, 0.5), 10 ** rng.uniform(-4, -1.5)
+        shown = exact + error * rng.uniform(-1, 1, len(x))
+        values = Values(shown, np.full(len(x), error), shown - error, shown + error)
+        root = root_on_grid(x, values, target, sense)
+        assert inside(root, target, sense)
+        assert root.upper / root.lower < 3
