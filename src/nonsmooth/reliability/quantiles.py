@@ -213,14 +213,15 @@ class _Question:
     """What is asked of `crossing_probability`, again and again."""
 
     def __init__(self, scene: Scene, given: dict, tol: float | None):
-        self._scene, self._given = scene, {k: v for k, v in given.items() if v is not None}
+        self._scene = scene
+        self._given: dict[str, Any] = {k: v for k, v in given.items() if v is not None}
         self._tol = None if tol is None else require_tolerance(tol)
         self._refusal: str | None = None
         self.attributes: dict = {}
 
     def __call__(self, levels: np.ndarray, horizons: np.ndarray, tol: float | None) -> xr.Dataset:
         """Return W; the refusal of a tolerance is noted."""
-        wanted = {} if tol is None else {"tol": tol}
+        wanted: dict[str, Any] = {} if tol is None else {"tol": tol}
         try:
             found = crossing_probability(self._scene, levels, horizons, **self._given, **wanted)
         except ToleranceError as refused:
@@ -249,8 +250,8 @@ class _Question:
         self,
         targets: list[float],
         guesses: list[float],
-        curves: Callable[[np.ndarray, float | None], list],
-        curve: Callable[[int, np.ndarray, float | None], Any],
+        curves: Callable[..., list[xr.Dataset]],
+        curve: Callable[..., xr.Dataset],
         sense: int,
     ) -> list[Root]:
         """Find where W takes the values `targets`.
@@ -270,15 +271,17 @@ class _Question:
             self._given.pop("order", None)
             found = _on_grids(curves, targets, guesses, sense, tol)
         else:
-            found = []
-            for k, (target, guess) in enumerate(zip(targets, guesses, strict=True)):
-                evaluate = partial(curve, k, tol=tol)
-                found.append(
-                    solved_root(lambda x, ask=evaluate: _values(ask(x)), target, guess, sense)
-                )
+            found = [
+                solved_root(partial(_one, partial(curve, k), tol), target, guess, sense)
+                for k, (target, guess) in enumerate(zip(targets, guesses, strict=True))
+            ]
         if self._refusal is not None:
             raise ToleranceError(self._refusal, found)
         return found
+
+
+def _one(curve, tol, x):
+    return _values(curve(x, tol))
 
 
 def _values(run):
