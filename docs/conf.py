@@ -69,6 +69,16 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "within_subsection_order": ExplicitOrder(
         [
+            "first_number.py",
+            "my_oscillator.py",
+            "which_method.py",
+            "own_formulas.py",
+            "dead_zone.py",
+            "far_start.py",
+            "earthquake.py",
+            "stiffer_and_stiffer.py",
+            "error_bars.py",
+            "reading_an_artifact.py",
             "trajectories.py",
             "yielding_oscillator.py",
             "obstacle_density.py",

@@ -16,15 +16,9 @@ scene = ns.Scene("friction", n=100)
 horizons = np.linspace(0.5, 10, 39)
 solved = ns.crossing_probability(scene, threshold=0.6, horizons=horizons, p=10)
 sampled = ns.crossing_probability(scene, 0.6, horizons, p=10, paths=20_000, step=0.02, seed=1)
-limit = ns.crossing_probability(scene, 0.6, horizons, method="asymptotic")
+limit = ns.crossing_probability(scene, 0.6, horizons, p=10, method="asymptotic")
 
-figure, axis = plt.subplots(figsize=(6, 3.6), layout="constrained")
-w, error = sampled["probability"], 2 * sampled["probability_error"]
-axis.fill_between(horizons, w - error, w + error, color="#56B4E9", label="Monte Carlo, 2 s.e.")
-axis.plot(horizons, solved["probability"], color="#0072B2", label="deterministic")
-axis.plot(horizons, limit["probability"], "k--", label=r"limit $p \to \infty$")
-axis.set(xlabel="T", ylabel=r"$W(\sqrt{p}\,b,\, p\,T)$ at p = 10")
-axis.legend()
+ns.plot({"deterministic": solved, "Monte Carlo": sampled, "the limit, and its error": limit})
 plt.show()
 
 # %%

@@ -12,17 +12,12 @@ import numpy as np
 
 import nonsmooth as ns
 
-scene = ns.Scene("obstacle", noise="white", n=100, potential="x**2/2 - x**4/8", observable="x")
+scene = ns.Scene("obstacle", noise="white", n=100, potential="x**4/2 - x**2/2", observable="x")
 points = {"x": np.linspace(-1.4, 1.4, 141), "y": np.linspace(-2.5, 2.5, 101)}
 density = ns.invariant_density(scene, points=points)
 print(density)
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(7.5, 3.2), layout="constrained")
-colours = left.contourf(density["x"], density["y"], density["density_y_x"], 12, cmap="viridis")
-figure.colorbar(colours, ax=left)
-left.set(xlabel="x", ylabel="y", title="joint density")
-right.plot(density["x"], density["density_x"], color="black")
+panels = ns.plot(density)
 for wall in (-1, 1):
-    right.axvline(wall, color="0.7", linestyle=":")
-right.set(xlabel="x", ylabel="density", title="displacement")
+    panels["density_x"].axvline(wall, color="0.7", linestyle=":")
 plt.show()

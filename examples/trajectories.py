@@ -4,8 +4,7 @@ Paths, and what n does
 
 One path of each model with the penalization n = 2, with n = 100, and in the non-smooth limit
 n = inf, all driven by the same noise. With a larger n the model yields, slips or rebounds more
-sharply. In the limit the displacement of
-the first and the third model never leaves [-1, 1]; friction with white noise hardly depends on n.
+sharply. In the limit the displacement of the first and the third model never leaves [-1, 1].
 """
 
 import matplotlib.pyplot as plt
@@ -29,14 +28,8 @@ for axis, (model, (variable, damping)) in zip(axes, MODELS.items(), strict=True)
             observable=variable,
         )
         paths = ns.simulate(scene, 20, step=0.005, paths=1, seed=3, times=TIMES, keep="paths")
-        axis.plot(
-            paths["time"],
-            paths[variable].squeeze(),
-            color=colour,
-            linestyle=dashes,
-            linewidth=0.9,
-            label=f"n = {n:g}",
-        )
+        look = {"color": colour, "linestyle": dashes, "linewidth": 0.9, "label": f"n = {n:g}"}
+        axis.plot(paths["time"], paths[variable].squeeze(), **look)
     axis.set(ylabel=variable, title=model)
 figure.legend(*axes[0].get_legend_handles_labels(), ncols=3, loc="outside lower center")
 axes[-1].set(xlabel="time")

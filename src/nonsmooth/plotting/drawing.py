@@ -87,7 +87,7 @@ def _dataset(result):
 
 def _panels(plt, names):
     """Make a panel for each name, in up to three columns."""
-    columns = min(len(names), 3 if len(names) > 4 else 2)
+    columns = min(len(names), 2 if len(names) == 4 else 3)
     rows = -(-len(names) // columns)
     width = TEXT_WIDTH * (0.6 if columns == 1 else 1)
     figure, axes = plt.subplots(rows, columns, figsize=(width, rows * PANEL_HEIGHT), squeeze=False)
@@ -166,13 +166,14 @@ def _draw_map(panel, data, values, colour, label):
     grid = data[across].values, data[down].values, values.values
     if colour is None:
         filled = panel.contourf(*grid, 12, cmap="viridis")
-        bar = panel.figure.colorbar(filled, ax=panel)
+        bar = panel.figure.colorbar(filled, ax=panel, label=_title(values))
         bar.outline.set_visible(False)
     else:
         panel.contour(*grid, 8, colors=colour, linewidths=0.8)
         panel.plot([], [], color=colour, label=label)
-    panel.set(xlabel=_title(data[across]), ylabel=_title(data[down]), title=_title(values))
-    panel.title.set_size(8)
+        panel.set_title(_title(values), fontsize=8)
+    panel.grid(False)
+    panel.set(xlabel=_title(data[across]), ylabel=_title(data[down]))
 
 
 def _draw_estimates(panel, estimates):
@@ -191,7 +192,10 @@ def _draw_estimates(panel, estimates):
     )
     panel.set_ylabel("value")
     if not numbers:
-        texts = [f"{name}\n{one.method}".strip() for name, one in estimates.items()]
+        alike = len({one.method for one in estimates.values()}) == 1 and len(estimates) > 1
+        texts = [
+            f"{name}\n{'' if alike else one.method}".strip() for name, one in estimates.items()
+        ]
         panel.set_xticks(places, texts)
         panel.set_xlim(-0.5, len(values) - 0.5)
 
