@@ -28,6 +28,7 @@ from workflow.experiment import (
     swept,
 )
 from workflow.failures import hints
+from workflow.studies import Studies
 
 
 configfile: "config.yaml"
@@ -44,6 +45,10 @@ wildcard_constraints:
     shard="[0-9]+",
     scene="[a-z0-9_]+",
     diagram="[a-z0-9_]+",
+    study="[a-z0-9_]+",
+    question="[a-z0-9_]+",
+    case="[^/]+",
+    batch="[0-9]+",
 
 
 rule all:
@@ -70,6 +75,7 @@ include: "workflow/rules/hard_cases.smk"
 include: "workflow/rules/rates.smk"
 include: "workflow/rules/paper.smk"
 include: "workflow/rules/speed_against_error.smk"
+include: "workflow/rules/studies.smk"
 
 
 for job in workflow.rules:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import grimp
 
-PACKAGES = ("nonsmooth", "reproduction")
+PACKAGES = ("nonsmooth", "reproduction", "studies")
 
 
 @lru_cache(maxsize=1)
@@ -16,7 +16,7 @@ def _graph():
 
 @cache
 def sources(script: str) -> list[str]:
-    """List the modules of the two packages that a script imports, directly or through others.
+    """List the modules of the packages that a script imports, directly or through others.
 
     Parameters
     ----------

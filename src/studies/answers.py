@@ -1,0 +1,184 @@
+"""Answers: what the library returns, as datasets in the user's units."""
+
+import hashlib
+import json
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from nonsmooth.errors import AccuracyWarning, ToleranceError
+from nonsmooth.estimate import Estimate
+from reproduction.errors import ArtifactError
+from reproduction.jobs import artifact
+from studies.questions import PLAIN, QUESTIONS
+from studies.scenes import observed, scene_of
+from studies.units import Powers, Units
+
+
+def answer(
+    scene: Mapping[str, Any],
+    question: Mapping[str, Any],
+    units: Mapping[str, str],
+    seed: int,
+    threads: int = 1,
+) -> xr.Dataset:
+    """Answer a question about a scene.
+
+    Parameters
+    ----------
+    scene, question : mapping
+        As in a study.
+    units : mapping
+        The user's units, for scenes in SI units.
+    seed : int
+    threads : int
+
+    Returns
+    -------
+    xarray.Dataset
+        The first variable of the question has the method as an attribute, and, where the accuracy
+        asked for or aimed at was missed, what was said about that as a comment.
+    """
+    thing, ruler = scene_of(scene, units)
+    asked = QUESTIONS[question["ask"]]
+    given = arguments(question, ruler, observed(scene))
+    if asked.sampled:
+        given |= {"seed": (seed, "study"), "threads": threads}
+    found, remark = _best(asked, thing, given)
+    return _described(found, asked, ruler, observed(scene), f"{thing}, {dict(question)}", remark)
+
+
+def arguments(question: Mapping[str, Any], units: Units, g: Powers) -> dict[str, Any]:
+    """Return the arguments of a question as numbers of the scene.
+
+    Parameters
+    ----------
+    question : mapping
+    units : Units
+    g : mapping
+        Powers of the base quantities in the observable.
+
+    Raises
+    ------
+    ConfigError
+        If a quantity cannot be read.
+    """
+    known = QUESTIONS[question["ask"]].arguments
+    return {
+        name: value if known[name] == PLAIN else units.number(value, resolved(known[name], g))
+        for name, value in question.items()
+        if name != "ask"
+    }
+
+
+def resolved(powers: Powers, g: Powers) -> dict[str, int]:
+    """Put the observable's powers of the base quantities in the place of ``"g"``."""
+    total = {base: power for base, power in powers.items() if base != "g"}
+    for base, power in g.items():
+        total[base] = total.get(base, 0) + powers.get("g", 0) * power
+    return {base: power for base, power in total.items() if power}
+
+
+def _best(asked, scene, given):
+    """Return the answer and a remark, which says by how much a tolerance was missed."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("always", AccuracyWarning)
+        try:
+            found = asked.solve(scene, **given)
+        except ToleranceError as error:
+            if error.result is None:
+                raise
+            return error.result, str(error)
+    return found, "; ".join(str(warning.message) for warning in caught)
+
+
+def _described(found, asked, units, g, summary, remark):
+    if isinstance(found, Estimate):
+        name = next(iter(asked.values))
+        own = xr.Dataset({name: found.value, f"{name}_error": found.error})
+        own.attrs["method"] = found.method
+        found = own
+    variables = {}
+    for name in found.variables:
+        powers, text = _meaning(str(name), asked)
+        powers, values = resolved(powers, g), found[name]
+        attrs = {"long_name": text, "units": units.unit(powers)}
+        variables[name] = (values.dims, values.values * units.factor(powers), attrs)
+    result = xr.Dataset(variables).set_coords(list(found.coords))
+    first = next(name for name in asked.values if name in result.data_vars)
+    result[first].attrs["method"] = found.attrs.get("method", asked.title.lower())
+    if remark:
+        result[first].attrs["comment"] = remark
+    result.attrs = {"title": asked.title, "summary": summary}
+    return result
+
+
+def _meaning(name, asked):
+    if name in asked.values:
+        return asked.values[name]
+    whole = name.removesuffix("_error")
+    if whole != name and whole in asked.values:
+        powers, text = asked.values[whole]
+        return powers, f"error of: {text}"
+    return PLAIN, name.replace("_", " ")
+
+
+def answer_batch(
+    scenes: Mapping[str, Mapping[str, Any]],
+    question: Mapping[str, Any],
+    units: Mapping[str, str],
+    seed: int,
+    store: str | Path,
+    sources: Sequence[str],
+    threads: int = 1,
+) -> xr.Dataset:
+    """Answer a question about many scenes, each of which is computed once.
+
+    Parameters
+    ----------
+    scenes : mapping
+        From names to scenes.
+    question, units, seed, threads
+        As for `answer`.
+    store : str or Path
+        Folder in which answers are kept, by what they depend on.
+    sources : sequence of str
+        Files on which answers depend besides.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `scene`, the position among the scenes.
+    """
+    code = hashlib.sha256(b"".join(Path(path).read_bytes() for path in sorted(sources)))
+    found = []
+    for scene in scenes.values():
+        parameters = {"scene": scene, "question": question, "units": units, "seed": seed}
+        key = code.copy()
+        key.update(json.dumps(parameters, sort_keys=True).encode())
+        found.append(_kept(Path(store) / f"{key.hexdigest()[:32]}.nc", parameters, threads))
+    merged = xr.concat(
+        found, "scene", data_vars="all", coords="minimal", compat="override", join="override",
+        combine_attrs="override",
+    )  # fmt: skip
+    position = {"long_name": "position of the scene in the batch", "units": "1"}
+    merged = merged.assign_coords(scene=("scene", np.arange(len(found)), position))
+    first = next(name for name in QUESTIONS[question["ask"]].values if name in merged.data_vars)
+    methods = {data[first].attrs["method"] for data in found}
+    merged[first].attrs["method"] = ", ".join(sorted(methods))
+    merged.attrs["summary"] = f"{len(found)} scenes: {', '.join(scenes)}"
+    return merged
+
+
+def _kept(path, parameters, threads):
+    try:
+        return artifact.read(path)
+    except ArtifactError:
+        result = answer(**parameters, threads=threads)
+        artifact.write(result, path, artifact.provenance("study_batch", parameters))
+        return artifact.read(path)

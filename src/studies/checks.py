@@ -1,0 +1,139 @@
+"""What is asked of a study before anything runs."""
+
+import difflib
+import math
+import warnings
+from functools import cache
+from pathlib import Path
+
+import yaml
+
+from nonsmooth.errors import NonsmoothError
+from reproduction.configuration.schema import shown, validate
+from reproduction.errors import ConfigError, dotted
+from studies.answers import arguments
+from studies.questions import QUESTIONS
+from studies.scenes import is_structure, observed, scene_of
+from studies.study import Study
+
+SCHEMA = Path(__file__).parents[2] / "workflow" / "schemas" / "study.schema.yaml"
+MOST_SCENES = 100_000
+
+
+def require_sound(study: Study) -> None:
+    """Refuse a study that cannot be computed.
+
+    Parameters
+    ----------
+    study : Study
+
+    Raises
+    ------
+    ConfigError
+        One line with the key, its value and the cure; the caller puts the file before it.
+    """
+    validate(study.content, _schema())
+    if "scenes" in study.content and study.axes:
+        raise ConfigError("'scenes' and 'sweep' are both given; delete one of the two")
+    if not {"scenes", "sweep", "base"} & study.content.keys():
+        raise ConfigError("the study has no scenes; add 'base', 'scenes' or 'sweep'")
+    count = math.prod(map(len, study.axes.values()))
+    if count > MOST_SCENES:
+        raise ConfigError(
+            f"'sweep' makes {count} scenes, more than {MOST_SCENES}; leave out values"
+        )
+    if study.axes and len(study.scenes) < count:
+        raise ConfigError("'sweep' names two scenes alike; give values that differ as texts")
+    for name, question in study.questions.items():
+        _check_question(name, question)
+    if not study.has_pages:
+        for name, question in study.questions.items():
+            if question["ask"] == "invariant_density":
+                raise ConfigError(
+                    f"'questions.{name}.ask' = 'invariant_density' needs a page for each scene; "
+                    "ask it in a study of fewer scenes, with batch: 1"
+                )
+    kinds = set()
+    for name, parameters in study.scenes.items():
+        _check_scene(study, name, parameters)
+        kinds.add(is_structure(parameters))
+    if len(kinds) > 1:
+        raise ConfigError(
+            "some scenes are in SI units and others are dimensionless; make two studies of them"
+        )
+    _check_meaning(study)
+
+
+def _check_question(name, question):
+    key = ("questions", name)
+    if question["ask"] not in QUESTIONS:
+        near = difflib.get_close_matches(question["ask"], QUESTIONS, n=1)
+        cure = f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(QUESTIONS)}"
+        raise ConfigError(f"{dotted((*key, 'ask'))} = {shown(question['ask'])}: {cure}", key=key)
+    asked = QUESTIONS[question["ask"]]
+    for argument in question:
+        if argument not in {"ask", *asked.arguments}:
+            near = difflib.get_close_matches(argument, asked.arguments, n=1)
+            cure = (
+                f"did you mean {near[0]!r}?"
+                if near
+                else f"{question['ask']} takes {', '.join(asked.arguments)}"
+            )
+            raise ConfigError(f"unknown key {argument!r} in {dotted(key)}; {cure}", key=key)
+    for argument in asked.required:
+        if argument not in question:
+            raise ConfigError(
+                f"the key {argument!r} is missing in {dotted(key)}; {question['ask']} needs it",
+                key=key,
+            )
+
+
+def _check_scene(study, name, parameters):
+    """Compare the keys of a scene with the schema of its kind."""
+    kind = "system" if is_structure(parameters) else "scene"
+    try:
+        validate(parameters, _schema() | {"$ref": f"#/$defs/{kind}", **_OWN})
+    except ConfigError as error:
+        raise _located(study, name, error) from None
+
+
+# what the schema of a whole study asks for is not asked of a scene
+_OWN: dict = {"type": "object", "required": [], "properties": {}, "additionalProperties": True}
+
+
+def _check_meaning(study):
+    """Make every scene once, or of a sweep its corners, and read all quantities."""
+    for name, parameters in _examples(study):
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                _, units = scene_of(parameters, study.units)
+        except NonsmoothError as error:
+            raise _located(study, name, error) from None
+        for question_name, question in study.questions.items():
+            try:
+                arguments(question, units, observed(parameters))
+            except ConfigError as error:
+                key = dotted(("questions", question_name))
+                raise ConfigError(f"{key}, of {dotted(('scenes', name))}: {error}") from None
+
+
+def _examples(study):
+    """Scenes in which every value of a sweep occurs; all scenes if there is no sweep."""
+    if not study.axes:
+        return list(study.scenes.items())
+    names = list(study.scenes)
+    first = {axis: values[0] for axis, values in study.axes.items()}
+    wanted = [first | {axis: value} for axis, values in study.axes.items() for value in values]
+    base = study.content.get("base", {})
+    return [(names[0] if point == first else str(point), base | point) for point in wanted]
+
+
+def _located(study, name, error):
+    key = ("sweep",) if study.axes else ("scenes", name)
+    return ConfigError(f"{dotted(key)}: {error}", key=key)
+
+
+@cache
+def _schema():
+    return yaml.safe_load(SCHEMA.read_text(encoding="utf-8"))

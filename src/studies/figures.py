@@ -1,0 +1,193 @@
+"""Figures of answers: curves with their error bands, densities, maps over a sweep."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from studies.questions import Question
+from studies.units import pretty
+
+BLUE, ORANGE = "#0072B2", "#D55E00"
+WIDTH, HEIGHT = 4.6, 2.5
+
+
+def labelled(variable: xr.DataArray) -> str:
+    """Spell what is drawn with its unit."""
+    unit = pretty(variable.attrs["units"])
+    return f"{variable.attrs['long_name']}, {unit}" if unit else variable.attrs["long_name"]
+
+
+def of_answer(data: xr.Dataset, asked: Question) -> list[Figure]:
+    """Draw all curves of an answer; a number has none.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+    asked : Question
+
+    Returns
+    -------
+    list of matplotlib.figure.Figure
+    """
+    names = [name for name in asked.values if name in data.data_vars]
+    densities = [name for name in names if name.startswith("density_")]
+    if densities:
+        return [_densities(data, [n for n in densities if data[n].ndim == 1])] + [
+            _joint(data[name]) for name in densities if data[name].ndim == 2
+        ]
+    return [_curve(data, name) for name in names if data[name].ndim == 1 and name not in _LIMITS]
+
+
+_LIMITS = ("lower", "upper")
+
+
+def _curve(data, name):
+    """Draw values over time with the band in which the truth is."""
+    figure, axis = plt.subplots(figsize=(WIDTH, HEIGHT), constrained_layout=True)
+    variable = data[name]
+    over = data[variable.dims[0]]
+    value, error = variable.values, data[f"{name}_error"].values
+    low, high = value - error, value + error
+    if name == "probability":
+        low, high = data["lower"].values, data["upper"].values
+    axis.fill_between(over, low, high, color=BLUE, alpha=0.3, linewidth=0, label="error band")
+    axis.plot(over, value, color=BLUE, marker="o", markersize=3, label="value")
+    if name == "probability":
+        axis.set_ylim(0, min(1.02, 1.15 * max(float(np.max(high)), 1e-12)))
+    axis.set(xlabel=labelled(over), xlim=(0, None))
+    axis.set_ylabel(name if name == "probability" else labelled(variable))
+    axis.legend(loc="best", fontsize=8)
+    return figure
+
+
+def _densities(data, names):
+    figure, axes = plt.subplots(
+        1, len(names), figsize=(max(WIDTH, 2.3 * len(names)), HEIGHT), constrained_layout=True,
+        squeeze=False,
+    )  # fmt: skip
+    for axis, name in zip(axes[0], names, strict=True):
+        over = data[data[name].dims[0]]
+        value, error = data[name].values, data[f"{name}_error"].values
+        axis.fill_between(
+            over, np.maximum(value - error, 0), value + error, color=BLUE, alpha=0.3, linewidth=0
+        )
+        axis.plot(over, value, color=BLUE)
+        seen = np.flatnonzero(value > 1e-3 * value.max())
+        axis.set_xlim(float(over[seen[0]]), float(over[seen[-1]]))
+        axis.set_ylim(0, None)
+        unit = pretty(over.attrs["units"])
+        axis.set_xlabel(_symbol(over.name) + (f", {unit}" if unit else ""))
+        own = pretty(data[name].attrs["units"])
+        axis.set_ylabel("density" + (f", {own}" if own else ""))
+    return figure
+
+
+def _joint(variable):
+    figure, axis = plt.subplots(figsize=(WIDTH, 2.8), constrained_layout=True)
+    first, second = (variable[dim] for dim in variable.dims)
+    image = axis.pcolormesh(
+        second, first, variable.values, cmap="viridis", shading="nearest", rasterized=True
+    )
+    for over, limit in ((second, axis.set_xlim), (first, axis.set_ylim)):
+        other = tuple(k for k, dim in enumerate(variable.dims) if dim != over.name)
+        seen = np.flatnonzero(variable.values.max(axis=other) > 1e-3 * variable.values.max())
+        limit(float(over[seen[0]]), float(over[seen[-1]]))
+    names = [f"{_symbol(v.name)}, {pretty(v.attrs['units'])}".rstrip(", ") for v in (second, first)]
+    axis.set(xlabel=names[0], ylabel=names[1])
+    axis.grid(False)
+    bar = figure.colorbar(image, ax=axis)
+    bar.set_label(f"joint density, {pretty(variable.attrs['units'])}".rstrip(", "))
+    return figure
+
+
+def _symbol(name):
+    texts = {"y": "velocity $y$", "x": "displacement $x$"}
+    return texts.get(str(name), rf"$\{name}$")
+
+
+def maps(
+    values: np.ndarray, axes: Mapping[str, Sequence[Any]], label: str, numbers: Mapping[str, list]
+) -> Figure:
+    """Draw a number over a sweep: a map for each value of the third parameter and so on.
+
+    Parameters
+    ----------
+    values : ndarray
+        In the order of the sweep, the last parameter fastest.
+    axes : mapping
+        From parameters to values, as the study has them.
+    label : str
+        Of the number.
+    numbers : mapping
+        From parameters to values as numbers, for the axes.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    names = sorted(axes, key=lambda name: -len(axes[name]))[:2]
+    cube = xr.DataArray(values.reshape([len(axes[name]) for name in axes]), dims=list(axes))
+    rest = [name for name in axes if name not in names]
+    panels = cube.stack(panel=rest) if rest else cube.expand_dims(panel=[()])
+    count = panels.sizes["panel"]
+    columns = min(count, 4)
+    rows = -(-count // columns)
+    figure, grid = plt.subplots(
+        rows, columns, figsize=(2.2 * columns + 1.0, 2.0 * rows + 0.3), squeeze=False,
+        sharex=True, sharey=True, constrained_layout=True,
+    )  # fmt: skip
+    if len(names) == 1:
+        return _lines(figure, grid, cube, names[0], numbers, label)
+    low, high = float(values.min()), float(values.max())
+    logarithmic = low > 0 and high > 30 * low
+    norm = plt.matplotlib.colors.LogNorm(low, high) if logarithmic else None
+    limits = {} if logarithmic else {"vmin": low, "vmax": high}
+    image = None
+    for k, axis in enumerate(grid.flat):
+        if k >= count:
+            axis.set_visible(False)
+            continue
+        panel = panels.isel(panel=k)
+        image = axis.pcolormesh(
+            range(len(axes[names[0]])), range(len(axes[names[1]])),
+            panel.transpose(names[1], names[0]).values, norm=norm, cmap="viridis",
+            shading="nearest", **limits,
+        )  # fmt: skip
+        axis.grid(False)
+        if rest:
+            chosen = np.unravel_index(k, [len(axes[name]) for name in rest])
+            text = ", ".join(f"{n} = {axes[n][i]}" for n, i in zip(rest, chosen, strict=True))
+            axis.set_title(text, fontsize=8)
+    _ticks(grid, axes, names)
+    figure.colorbar(image, ax=grid, label=label)
+    return figure
+
+
+def _ticks(grid, axes, names):
+    """Write the values of the sweep beside the cells, not more than six on an axis."""
+    for axis in grid.flat:
+        for name, set_ticks in ((names[0], axis.set_xticks), (names[1], axis.set_yticks)):
+            positions = np.unique(np.linspace(0, len(axes[name]) - 1, 6).round().astype(int))
+            texts = [str(axes[name][k]) for k in positions]
+            set_ticks(positions, texts, fontsize=7)
+    for axis in grid[-1]:
+        axis.set_xlabel(names[0].replace("_", " "))
+    for row in grid:
+        row[0].set_ylabel(names[1].replace("_", " "))
+
+
+def _lines(figure, grid, cube, name, numbers, label):
+    """Draw a sweep of one parameter as a line."""
+    axis = grid[0, 0]
+    figure.set_size_inches(WIDTH, HEIGHT)
+    axis.plot(numbers[name], cube.values, color=BLUE, marker="o", markersize=3)
+    if min(numbers[name]) > 0 and max(numbers[name]) > 30 * min(numbers[name]):
+        axis.set_xscale("log")
+        axis.xaxis.set_major_locator(LogLocator(numticks=6))
+    axis.set(xlabel=name.replace("_", " "), ylabel=label)
+    return figure

@@ -1,0 +1,166 @@
+"""Quantities with units as numbers of a scene, and numbers of a scene in the user's units."""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+import pint
+
+from nonsmooth.dimensions import Scales
+from reproduction.errors import ConfigError
+
+# powers of the base quantities, as in {"length": 1, "time": -1} for a velocity
+Powers = Mapping[str, int]
+BASE = {"length": "m", "time": "s", "force": "N"}
+# what a text may be: a number and a unit of letters, digits and signs
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([\w\s/*^().%µ·²³-]*)")
+
+
+@cache
+def _registry():
+    # a frequency in Hz counts cycles, of 2 pi rad each; pint takes one for 1 rad/s
+    registry = pint.UnitRegistry(on_redefinition="ignore")
+    registry.define("hertz = 2 * pi * radian / second = Hz")
+    return registry
+
+
+def in_si(value: Any, unit: str) -> float:
+    """Read a quantity.
+
+    Parameters
+    ----------
+    value : str or float
+        Such as ``"2 mm"``; a plain number only if `unit` is "1".
+    unit : str
+        An SI unit of its kind.
+
+    Returns
+    -------
+    float
+        In that unit.
+
+    Raises
+    ------
+    ConfigError
+        If there is no unit, an unknown one, or one of another kind.
+    """
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        value = str(value)
+    example = f"write such as '2 {unit}'" if unit != "1" else "write a number, or such as '5 %'"
+    found = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if found is None:
+        raise ConfigError(f"{value!r} is no number with a unit; {example}")
+    number, own = float(found[1]), found[2].strip().replace("²", "^2").replace("³", "^3")
+    if not own and unit != "1":
+        raise ConfigError(f"{value!r} has no unit; {example}")
+    try:
+        factor = _registry().parse_units(own.replace("%", "percent")) if own else 1.0
+        return float((number * factor * _registry().dimensionless).to(unit.replace("1", "")).m)
+    except pint.DimensionalityError:
+        raise ConfigError(f"{value!r} is no {_kind(unit)}; {example}") from None
+    except (pint.PintError, ValueError, AssertionError, TypeError):
+        raise ConfigError(f"{value!r} has a unit that is not known; {example}") from None
+
+
+def _kind(unit):
+    return "plain number" if unit == "1" else f"quantity in {unit}"
+
+
+@dataclass(frozen=True)
+class Units:
+    """Converts between a scene's numbers and the user's quantities.
+
+    Parameters
+    ----------
+    scales : Scales, optional
+        The scene's units; None for a dimensionless scene, whose numbers stay as they are.
+    names : dict
+        The user's units of length, time and force, SI units where not given.
+    """
+
+    scales: Scales | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+
+    def factor(self, powers: Powers) -> float:
+        """Return what a scene's unit of a quantity is in the user's unit."""
+        if self.scales is None:
+            return 1.0
+        value = 1.0
+        for base, power in powers.items():
+            user = in_si(f"1 {self._name(base)}", BASE[base])
+            value *= (getattr(self.scales, base) / user) ** power
+        return value
+
+    def unit(self, powers: Powers) -> str:
+        """Spell the user's unit of a quantity as the CF conventions have it."""
+        parts = [
+            self._name(base) + (str(power) if power != 1 else "")
+            for base, power in sorted(powers.items(), key=lambda item: -item[1])
+            if power != 0
+        ]
+        return " ".join(parts) if parts and self.scales is not None else "1"
+
+    def number(self, value: Any, powers: Powers) -> Any:
+        """Read a quantity, or a list of them, as numbers of the scene.
+
+        Raises
+        ------
+        ConfigError
+            As from `in_si`, for scenes in SI units.
+        """
+        if isinstance(value, list):
+            return [self.number(one, powers) for one in value]
+        # plain numbers, infinity among them, are dimensionless
+        if self.scales is None or value in (float("inf"), float("-inf")):
+            return value
+        si = Units(self.scales)
+        unit = si.unit(powers).replace(" ", "*")
+        unit = re.sub(r"([a-zA-Z])(-?\d)", r"\1**\2", unit)
+        return in_si(value, unit) / si.factor(powers)
+
+    def _name(self, base):
+        return self.names.get(base, BASE[base])
+
+
+def pretty(unit: str) -> str:
+    """Spell a unit of `Units.unit` for reading: mm2 s-1 as mm² s⁻¹."""
+    return "" if unit == "1" else unit.translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
+
+
+def spelt(value: float, error: float, unit: str) -> str:
+    """Spell a number with its error, to two digits of the error: 200.5 ± 2.6 mm² s⁻¹.
+
+    Parameters
+    ----------
+    value, error : float
+    unit : str
+        As the CF conventions have it.
+
+    Returns
+    -------
+    str
+    """
+    unit = pretty(unit)
+    tail = f" {unit}" if unit else ""
+    if error == 0:
+        return f"{value:.6g}{tail}" + (" (exact)" if value == 0 else "")
+    decimals = 1 - math.floor(math.log10(error))
+    size = max(abs(value), error)
+    if 1e-3 <= size < 1e5:
+        decimals = max(decimals, 0)
+        return f"{value:.{decimals}f} ± {error:.{decimals}f}{tail}"
+    exponent = math.floor(math.log10(size))
+    digits = max(decimals + exponent, 0)
+    scale = 10.0**exponent
+    power = str(exponent).translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
+    return f"({value / scale:.{digits}f} ± {error / scale:.{digits}f})·10{power}{tail}"
+
+
+def told(value: Any) -> str:
+    """Spell a value of a study on one line."""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}: {told(inner)}" for key, inner in value.items())
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)

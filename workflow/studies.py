@@ -1,0 +1,64 @@
+"""The studies that a run is asked for: files of the folder `studies`, or of the configuration."""
+
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from reproduction.errors import ConfigError
+from studies.study import Study
+
+FOLDER = Path("studies")
+
+
+class Studies:
+    """Finds studies by name; a file is read when its study is needed.
+
+    Parameters
+    ----------
+    own : dict
+        Studies in the configuration, by name.
+    """
+
+    def __init__(self, own: dict) -> None:
+        self.own = own
+        self.names = sorted(own or (path.stem for path in FOLDER.glob("*.yaml")))
+        self.get = cache(self._get)
+
+    def _get(self, name):
+        return Study(name, self.own[name]) if name in self.own else Study.of_file(self.file(name))
+
+    @staticmethod
+    def file(name: str) -> Path:
+        """Name the file of a study."""
+        return FOLDER / f"{name}.yaml"
+
+    def wanted(self, targets: Iterable[str]) -> list[str]:
+        """Return the names of the studies that some targets of snakemake ask for."""
+        targets = set(targets)
+        if "studies" in targets:
+            return self.names
+        parts = {part for target in targets for part in Path(target).parts}
+        return [name for name in self.names if {name, f"study_{name}"} & parts]
+
+    def check(self, targets: Iterable[str]) -> None:
+        """Refuse studies that some targets ask for and that cannot be computed.
+
+        Raises
+        ------
+        ConfigError
+            One line with the file, the key and the cure.
+        """
+        wanted = self.wanted(targets)
+        if not wanted:
+            return
+        # the library takes seconds, which other targets need not wait for
+        from studies.checks import require_sound
+
+        for name in wanted:
+            place = f"studies.{name}" if name in self.own else self.file(name)
+            study = self.get(name)
+            try:
+                require_sound(study)
+            except ConfigError as error:
+                own = str(error).startswith(str(study.folder)) and name not in self.own
+                raise error if own else ConfigError(str(error), place) from None
