@@ -14,7 +14,7 @@ from nonsmooth.errors import AccuracyWarning, ToleranceError
 from nonsmooth.estimate import Estimate
 from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
-from studies.questions import PLAIN, QUESTIONS
+from studies.questions import PLAIN, QUESTIONS, VARIABLES
 from studies.scenes import observed, scene_of
 from studies.units import Powers, Units
 
@@ -45,41 +45,50 @@ def answer(
     """
     thing, ruler = scene_of(scene, units)
     asked = QUESTIONS[question["ask"]]
-    given = arguments(question, ruler, observed(scene))
+    known = meanings(question, scene)
+    given = arguments(question, ruler, known)
     if asked.sampled:
         given |= {"seed": (seed, "study"), "threads": threads}
     found, remark = _best(asked, thing, given)
-    return _described(found, asked, ruler, observed(scene), f"{thing}, {dict(question)}", remark)
+    return _described(found, asked, ruler, known, f"{thing}, {dict(question)}", remark)
 
 
-def arguments(question: Mapping[str, Any], units: Units, g: Powers) -> dict[str, Any]:
+def meanings(question: Mapping[str, Any], scene: Mapping[str, Any]) -> dict[str, Powers]:
+    """Return what the observable and the variable of a question are, in base quantities."""
+    return {"g": observed(scene), "variable": VARIABLES.get(question.get("variable", ""), PLAIN)}
+
+
+def arguments(
+    question: Mapping[str, Any], units: Units, known: Mapping[str, Powers]
+) -> dict[str, Any]:
     """Return the arguments of a question as numbers of the scene.
 
     Parameters
     ----------
     question : mapping
     units : Units
-    g : mapping
-        Powers of the base quantities in the observable.
+    known : mapping
+        See `meanings`.
 
     Raises
     ------
     ConfigError
         If a quantity cannot be read.
     """
-    known = QUESTIONS[question["ask"]].arguments
+    kinds = QUESTIONS[question["ask"]].arguments
     return {
-        name: value if known[name] == PLAIN else units.number(value, resolved(known[name], g))
+        name: value if kinds[name] == PLAIN else units.number(value, resolved(kinds[name], known))
         for name, value in question.items()
         if name != "ask"
     }
 
 
-def resolved(powers: Powers, g: Powers) -> dict[str, int]:
-    """Put the observable's powers of the base quantities in the place of ``"g"``."""
-    total = {base: power for base, power in powers.items() if base != "g"}
-    for base, power in g.items():
-        total[base] = total.get(base, 0) + powers.get("g", 0) * power
+def resolved(powers: Powers, known: Mapping[str, Powers]) -> dict[str, int]:
+    """Put powers of the base quantities in the place of ``"g"`` and ``"variable"``."""
+    total: dict[str, int] = {}
+    for name, power in powers.items():
+        for base, inner in known.get(name, {name: 1}).items():
+            total[base] = total.get(base, 0) + power * inner
     return {base: power for base, power in total.items() if power}
 
 
@@ -97,7 +106,7 @@ def _best(asked, scene, given):
     return found, "; ".join(str(warning.message) for warning in caught)
 
 
-def _described(found, asked, units, g, summary, remark):
+def _described(found, asked, units, known, summary, remark):
     if isinstance(found, Estimate):
         name = next(iter(asked.values))
         own = xr.Dataset({name: found.value, f"{name}_error": found.error})
@@ -106,7 +115,9 @@ def _described(found, asked, units, g, summary, remark):
     variables = {}
     for name in found.variables:
         powers, text = _meaning(str(name), asked)
-        powers, values = resolved(powers, g), found[name]
+        powers = resolved(powers, known)
+        # some errors are one for all values
+        values = found[name].broadcast_like(found[str(name).removesuffix("_error")])
         attrs = {"long_name": text, "units": units.unit(powers)}
         variables[name] = (values.dims, values.values * units.factor(powers), attrs)
     result = xr.Dataset(variables).set_coords(list(found.coords))

@@ -11,9 +11,9 @@ import yaml
 from nonsmooth.errors import NonsmoothError
 from reproduction.configuration.schema import shown, validate
 from reproduction.errors import ConfigError, dotted
-from studies.answers import arguments
+from studies.answers import arguments, meanings
 from studies.questions import QUESTIONS
-from studies.scenes import is_structure, observed, scene_of
+from studies.scenes import is_structure, scene_of
 from studies.study import Study
 
 SCHEMA = Path(__file__).parents[2] / "workflow" / "schemas" / "study.schema.yaml"
@@ -112,7 +112,7 @@ def _check_meaning(study):
             raise _located(study, name, error) from None
         for question_name, question in study.questions.items():
             try:
-                arguments(question, units, observed(parameters))
+                arguments(question, units, meanings(question, parameters))
             except ConfigError as error:
                 key = dotted(("questions", question_name))
                 raise ConfigError(f"{key}, of {dotted(('scenes', name))}: {error}") from None

@@ -12,8 +12,10 @@ from matplotlib.ticker import LogLocator
 from studies.questions import Question
 from studies.units import pretty
 
-BLUE, ORANGE = "#0072B2", "#D55E00"
+BLUE = "#0072B2"
+COLORS = [BLUE, "#D55E00", "#009E73", "#56B4E9", "#000000"]
 WIDTH, HEIGHT = 4.6, 2.5
+_LIMITS = ("lower", "upper")
 
 
 def labelled(variable: xr.DataArray) -> str:
@@ -40,29 +42,48 @@ def of_answer(data: xr.Dataset, asked: Question) -> list[Figure]:
         return [_densities(data, [n for n in densities if data[n].ndim == 1])] + [
             _joint(data[name]) for name in densities if data[name].ndim == 2
         ]
-    return [_curve(data, name) for name in names if data[name].ndim == 1 and name not in _LIMITS]
+    curves = [name for name in names if data[name].ndim > 0 and name not in _LIMITS]
+    return [_curves(data, name) for name in curves]
 
 
-_LIMITS = ("lower", "upper")
-
-
-def _curve(data, name):
-    """Draw values over time with the band in which the truth is."""
+def _curves(data, name):
+    """Draw values over time with the band in which the truth is, a curve for each threshold."""
     figure, axis = plt.subplots(figsize=(WIDTH, HEIGHT), constrained_layout=True)
-    variable = data[name]
-    over = data[variable.dims[0]]
-    value, error = variable.values, data[f"{name}_error"].values
-    low, high = value - error, value + error
-    if name == "probability":
-        low, high = data["lower"].values, data["upper"].values
-    axis.fill_between(over, low, high, color=BLUE, alpha=0.3, linewidth=0, label="error band")
-    axis.plot(over, value, color=BLUE, marker="o", markersize=3, label="value")
-    if name == "probability":
-        axis.set_ylim(0, min(1.02, 1.15 * max(float(np.max(high)), 1e-12)))
+    over = data[data[name].dims[-1]]
+    curves = data.expand_dims("threshold") if data[name].ndim == 1 else data
+    for k in range(curves.sizes["threshold"]):
+        curve, color = curves.isel(threshold=k), COLORS[k % len(COLORS)]
+        value, error = curve[name].values, curve[f"{name}_error"].values
+        low, high = value - error, value + error
+        if name == "probability":
+            low, high = curve["lower"].values, curve["upper"].values
+        axis.fill_between(over, low, high, color=color, alpha=0.3, linewidth=0)
+        axis.plot(over, value, color=color, marker="o", markersize=3, label=_level(curve))
     axis.set(xlabel=labelled(over), xlim=(0, None))
-    axis.set_ylabel(name if name == "probability" else labelled(variable))
-    axis.legend(loc="best", fontsize=8)
+    if name == "probability":
+        axis.set(ylabel=name, ylim=(0, min(1.02, max(1.05 * axis.get_ylim()[1], 1e-9))))
+    else:
+        axis.set_ylabel(f"{name}, {pretty(data[name].attrs['units'])}".rstrip(", "))
+    if data[name].ndim > 1:
+        axis.legend(title="threshold", fontsize=8)
     return figure
+
+
+def levels(data: xr.Dataset, name: str) -> list[str]:
+    """Spell the thresholds of the curves of a variable; none if there is one curve alone."""
+    if data[name].ndim == 1:
+        return []
+    return [_level(data.isel(threshold=k)) for k in range(data.sizes["threshold"])]
+
+
+def _level(curve):
+    if "threshold" in curve.coords:
+        unit = curve["threshold"].attrs["units"]
+        return f"{float(curve['threshold']):.6g} {pretty(unit)}".rstrip()
+    if "threshold_lower" in curve.coords:
+        ends = (f"{float(curve[f'threshold_{end}']):.6g}" for end in ("lower", "upper"))
+        return f"{', '.join(ends)} {pretty(curve['threshold_lower'].attrs['units'])}".rstrip()
+    return None
 
 
 def _densities(data, names):

@@ -1,8 +1,9 @@
 """What a study can ask: for each question a function of the library, and what its numbers are.
 
 How to add one: an entry of `QUESTIONS`. The arguments are those of the function that a study may
-give, each with what it is: powers of the base quantities, with ``"g"`` for the observable; `PLAIN`
-for numbers without units. The values are the variables of the answer; those that are not named are
+give, each with what it is: powers of the base quantities, with ``"g"`` for the observable and
+``"variable"`` for the variable of the state that the question names; `PLAIN` for numbers without
+units. The values are the variables of the answer; those that are not named are
 plain numbers. Errors have the units of what they belong to.
 """
 
@@ -11,6 +12,7 @@ from dataclasses import dataclass, field
 
 from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
 from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.crossing.state.crossing import state_crossing_probability
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.invariant_density import invariant_density
 from nonsmooth.statistics.mean import mean
@@ -21,6 +23,7 @@ from studies.units import Powers
 PLAIN: Powers = {}
 TIME = {"time": 1}
 INTEGRAL = {"g": 1, "time": 1}
+VARIABLE = {"variable": 1}
 # of the state; the accelerations of the ground are those of the noise
 VARIABLES = {
     "y": {"length": 1, "time": -1},
@@ -127,6 +130,9 @@ QUESTIONS: dict[str, Question] = {
             "lower": (PLAIN, "the probability is above"),
             "upper": (PLAIN, "the probability is below"),
             "horizon": (TIME, "time"),
+            "threshold": (INTEGRAL, "threshold"),
+            "threshold_lower": (INTEGRAL, "lower end of the interval"),
+            "threshold_upper": (INTEGRAL, "upper end of the interval"),
         },
         {
             "threshold": INTEGRAL,
@@ -140,5 +146,26 @@ QUESTIONS: dict[str, Question] = {
             "order": PLAIN,
         },
         required=("threshold", "horizons"),
+    ),
+    "state_crossing_probability": Question(
+        "Probability that the state crosses",
+        state_crossing_probability,
+        {
+            "probability": (PLAIN, "probability that the variable has left the interval"),
+            "lower": (PLAIN, "the probability is above"),
+            "upper": (PLAIN, "the probability is below"),
+            "horizon": (TIME, "time"),
+        },
+        {
+            "variable": PLAIN,
+            "threshold": VARIABLE,
+            "horizons": TIME,
+            "method": PLAIN,
+            "tol": PLAIN,
+            "step": TIME,
+            "paths": PLAIN,
+            "precision": PLAIN,
+        },
+        required=("variable", "threshold", "horizons"),
     ),
 }

@@ -20,7 +20,7 @@ from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
 from studies import drawing, equations, figures
 from studies.questions import QUESTIONS
-from studies.scenes import QUANTITIES, is_structure, scene_of, structure_of
+from studies.scenes import is_structure, scene_of, structure_of
 from studies.study import Study
 from studies.surveys import seconds_of, survey
 from studies.units import pretty, spelt, told
@@ -147,22 +147,21 @@ def _numbers(data, asked):
 
 
 def _table(data: xr.Dataset, asked):
-    """Spell a curve as a table, unless it is a density."""
+    """Spell curves as a table, unless they are densities."""
     names = [
-        name
-        for name in asked.values
-        if name in data.data_vars and data[name].ndim == 1 and f"{name}_error" in data
+        name for name in asked.values
+        if name in data.data_vars and data[name].ndim > 0 and f"{name}_error" in data
         and not name.startswith("density_")
     ]  # fmt: skip
     if not names:
         return {}
-    over = data[data[names[0]].dims[0]]
-    head = [_headed(over.name, over)] + [_headed(name, data[name]) for name in names]
-    rows = [
-        [f"{float(over[k]):.6g}"]
-        + [spelt(float(data[name][k]), float(data[f"{name}_error"][k]), "1") for name in names]
-        for k in range(over.size)
-    ]
+    over = data[data[names[0]].dims[-1]]
+    columns, head = [], [_headed(over.name, over)]
+    for name in names:
+        value, error = (np.atleast_2d(data[key].values) for key in (name, f"{name}_error"))
+        head += figures.levels(data, name) or [_headed(name, data[name])]
+        columns += [list(map(spelt, *pair)) for pair in zip(value, error, strict=True)]
+    rows = [[f"{float(over[k]):.6g}", *(c[k] for c in columns)] for k in range(over.size)]
     return {"head": head, "rows": rows}
 
 

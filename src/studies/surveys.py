@@ -1,7 +1,6 @@
 """What a report shows of many scenes: maps of each answer over the sweep, and its extremes."""
 
 import csv
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ from studies.study import Study
 from studies.units import in_si, pretty, spelt, told
 
 SHOWN = 12  # scenes up to which all of them are tabled
+
 
 def seconds_of(path: str | Path) -> float | None:
     """Read the seconds that a job took from its benchmark file; None if that is gone."""

@@ -130,7 +130,7 @@ def pretty(unit: str) -> str:
     return "" if unit == "1" else unit.translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
 
 
-def spelt(value: float, error: float, unit: str) -> str:
+def spelt(value: float, error: float, unit: str = "1") -> str:
     """Spell a number with its error, to two digits of the error: 200.5 ± 2.6 mm² s⁻¹.
 
     Parameters

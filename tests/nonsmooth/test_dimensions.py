@@ -93,9 +93,10 @@ def test_agrees_with_a_simulation_in_si_units(name):
 
     observable = {"elasto_plastic": "plastic_strain_rate"}.get(structure.model)
     scene = structure.scene(observable, N)
-    found = variance(scene, [time], method="monte_carlo", seed=1)
-    unit = {"friction": scales.length, "elasto_plastic": scales.length,
-            "obstacle": scales.length * scales.time}[structure.model]  # fmt: skip
+    unit = scales.length * (scales.time if structure.model == "obstacle" else 1)
+    # of v(tau)/tau in the scene's units; 3 % of it
+    tol = 0.03 * sample.var() / unit**2 / time
+    found = variance(scene, [time], tol, method="monte_carlo", seed=1)
     value, error = (float(found[v].values[0]) * unit**2 for v in ("v", "v_error"))
     allowed = STANDARD_ERRORS * math.hypot(standard_error, error) + bias
     assert allowed < 0.3 * value, "the comparison would not see a wrong factor"
