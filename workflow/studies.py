@@ -1,6 +1,6 @@
 """The studies that a run is asked for: files of the folder `studies`, or of the configuration."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 
@@ -26,6 +26,15 @@ class Studies:
 
     def _get(self, name):
         return Study(name, self.own[name]) if name in self.own else Study.of_file(self.file(name))
+
+    def having(self, attribute: str, wildcard: str | None = None) -> Callable:
+        """Return a parameter's function: what a study has, all of it or by a wildcard."""
+
+        def found(wildcards):
+            value = getattr(self.get(wildcards.study), attribute)
+            return value if wildcard is None else value[wildcards[wildcard]]
+
+        return found
 
     @staticmethod
     def file(name: str) -> Path:

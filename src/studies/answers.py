@@ -117,7 +117,8 @@ def _described(found, asked, units, known, summary, remark):
         powers, text = _meaning(str(name), asked)
         powers = resolved(powers, known)
         # some errors are one for all values
-        values = found[name].broadcast_like(found[str(name).removesuffix("_error")])
+        whole = str(name).removesuffix("_error")
+        values = found[name].broadcast_like(found[whole]) if whole in found else found[name]
         attrs = {"long_name": text, "units": units.unit(powers)}
         variables[name] = (values.dims, values.values * units.factor(powers), attrs)
     result = xr.Dataset(variables).set_coords(list(found.coords))

@@ -92,13 +92,9 @@ def _check_scene(study, name, parameters):
     """Compare the keys of a scene with the schema of its kind."""
     kind = "system" if is_structure(parameters) else "scene"
     try:
-        validate(parameters, _schema() | {"$ref": f"#/$defs/{kind}", **_OWN})
+        validate(parameters, _schema()["$defs"][kind] | {"$defs": _schema()["$defs"]})
     except ConfigError as error:
         raise _located(study, name, error) from None
-
-
-# what the schema of a whole study asks for is not asked of a scene
-_OWN: dict = {"type": "object", "required": [], "properties": {}, "additionalProperties": True}
 
 
 def _check_meaning(study):

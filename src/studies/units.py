@@ -58,7 +58,9 @@ def in_si(value: Any, unit: str) -> float:
         raise ConfigError(f"{value!r} has no unit; {example}")
     try:
         factor = _registry().parse_units(own.replace("%", "percent")) if own else 1.0
-        return float((number * factor * _registry().dimensionless).to(unit.replace("1", "")).m)
+        return float(
+            (number * factor * _registry().dimensionless).to("" if unit == "1" else unit).m
+        )
     except pint.DimensionalityError:
         raise ConfigError(f"{value!r} is no {_kind(unit)}; {example}") from None
     except (pint.PintError, ValueError, AssertionError, TypeError):
@@ -116,13 +118,23 @@ class Units:
         # plain numbers, infinity among them, are dimensionless
         if self.scales is None or value in (float("inf"), float("-inf")):
             return value
-        si = Units(self.scales)
-        unit = si.unit(powers).replace(" ", "*")
-        unit = re.sub(r"([a-zA-Z])(-?\d)", r"\1**\2", unit)
-        return in_si(value, unit) / si.factor(powers)
+        return in_si(value, _in_si_units(powers)) / Units(self.scales).factor(powers)
 
     def _name(self, base):
         return self.names.get(base, BASE[base])
+
+
+def _in_si_units(powers):
+    """Spell the SI unit of a quantity as a user would, and as `in_si` reads it: N*s, m/s**2."""
+    over, under = (
+        "*".join(
+            BASE[base] + (f"**{abs(power)}" if abs(power) > 1 else "")
+            for base, power in powers.items()
+            if power * sign > 0
+        )
+        for sign in (1, -1)
+    )
+    return f"{over or 1}/{under}" if under else over or "1"
 
 
 def pretty(unit: str) -> str:

@@ -9,27 +9,15 @@ except ConfigError as error:
     sys.exit(f"error: {error}")
 
 
-def of_study(*keys):
-    """Look up what a study has, such as its questions, by wildcards."""
-
-    def found(wildcards):
-        value = getattr(STUDIES.get(wildcards.study), keys[0])
-        for key in keys[1:]:
-            value = value[wildcards[key]]
-        return value
-
-    return found
-
-
 rule study_answer:
     """Answer {wildcards.question} of {wildcards.case}, study {wildcards.study}"""
     output:
         "<results>/studies/{study}/{case}/{question}.nc",
     params:
-        scene=of_study("scenes", "case"),
-        question=of_study("questions", "question"),
-        units=of_study("units"),
-        seed=of_study("seed"),
+        scene=STUDIES.having("scenes", "case"),
+        question=STUDIES.having("questions", "question"),
+        units=STUDIES.having("units"),
+        seed=STUDIES.having("seed"),
     script:
         "../scripts/studies/answer.py"
 
@@ -40,9 +28,9 @@ rule study_batch:
         "<results>/studies/{study}/batches/{question}/{batch}.nc",
     params:
         scenes=lambda wildcards: STUDIES.get(wildcards.study).of_batch(int(wildcards.batch)),
-        question=of_study("questions", "question"),
-        units=of_study("units"),
-        seed=of_study("seed"),
+        question=STUDIES.having("questions", "question"),
+        units=STUDIES.having("units"),
+        seed=STUDIES.having("seed"),
     script:
         "../scripts/studies/batch.py"
 
@@ -60,9 +48,8 @@ rule study_report:
         multiext("<results>/studies/{study}/report", ".html", ".pdf"),
     params:
         name="{study}",
-        content=of_study("content"),
-        folder=of_study("folder"),
-        results=config["outputs"]["results"],
+        content=STUDIES.having("content"),
+        folder=STUDIES.having("folder"),
     script:
         "../scripts/studies/report.py"
 

@@ -11,6 +11,7 @@ if __name__ == "__main__":
     with job(snakemake):
         params, templates = snakemake.params, snakemake.input.templates
         study = Study(params.name, params.content, Path(params.folder))
-        content = contents(study, params.results)
+        # <results>/studies/<name>/report.html
+        content = contents(study, Path(snakemake.output[0]).parents[2])
         write_whole(snakemake.output[0], as_html(content, templates[0]))
         write_whole(snakemake.output[1], as_pdf(content, templates[1]))

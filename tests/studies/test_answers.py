@@ -1,0 +1,105 @@
+"""Answers: the library's numbers in the user's units, kept so that nothing is computed twice."""
+
+import math
+
+import numpy as np
+import pytest
+
+from nonsmooth.scenes.noises import White
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
+from nonsmooth.statistics.invariant_density import invariant_density
+from reproduction.jobs import artifact
+from studies import answers
+from studies.answers import answer, answer_batch
+from studies.questions import QUESTIONS
+
+SCENE = {"model": "friction", "n": 10}
+STRUCTURE = {
+    "model": "friction",
+    "mass": "10 kg",
+    "damping": "3 N s/m",
+    "slip_force": "5 N",
+    "ground_spectral_density": "0.1 m^2/s^3",
+    "n": 10,
+}
+SPREAD = {"ask": "asymptotic_variance"}
+
+
+def test_a_dimensionless_scene_has_the_numbers_of_the_library():
+    """With the method and the error."""
+    found, direct = answer(SCENE, SPREAD, {}, 0), asymptotic_variance(Scene("friction", n=10))
+    assert float(found["gamma2"]) == direct.value
+    assert float(found["gamma2_error"]) == direct.error
+    assert found["gamma2"].attrs["units"] == "1"
+    assert found["gamma2"].attrs["method"] == direct.method
+
+
+def test_gamma2_in_the_units_of_the_user():
+    """As computed by hand: T = 2 pi S_0 m^2 / F^2 makes the noise 1, L = F T^2 / m."""
+    time = 2 * math.pi * 0.1 * (10 / 5) ** 2
+    length = 5 * time**2 / 10
+    direct = asymptotic_variance(Scene("friction", White(), n=10, damping=3 * time / 10))
+    found = answer(STRUCTURE, SPREAD, {"length": "mm"}, 0)
+    assert found["gamma2"].attrs["units"] == "mm2 s-1"
+    assert float(found["gamma2"]) == pytest.approx(direct.value * 1e6 * length**2 / time)
+
+
+def test_densities_integrate_to_one():
+    """In the user's units, too."""
+    found = answer(STRUCTURE, {"ask": "invariant_density"}, {"length": "mm"}, 0)
+    assert found["density_y"].attrs["units"] == "s mm-1"
+    total = np.trapezoid(found["density_y"], found["y"])
+    scaled = invariant_density(Scene("friction", White(), n=10, damping=0.753982))
+    assert total == pytest.approx(np.trapezoid(scaled["density_y"], scaled["y"]), abs=1e-6)
+
+
+def test_a_missed_tolerance_is_told_and_not_hidden():
+    """The best that was reached comes with a comment."""
+    found = answer(SCENE, {"ask": "asymptotic_variance", "tol": 1e-15}, {}, 0)
+    assert "above tol" in found["gamma2"].attrs["comment"]
+    assert float(found["gamma2_error"]) > 1e-15 * float(found["gamma2"])
+
+
+def test_every_question_takes_its_arguments():
+    """The arguments of the table are those of the functions."""
+    import inspect
+
+    for name, asked in QUESTIONS.items():
+        taken = inspect.signature(asked.solve).parameters
+        assert set(asked.arguments) | set(asked.required) <= set(taken), name
+        assert asked.sampled == ("seed" in taken), name
+
+
+def test_a_batch_computes_what_is_new_alone(tmp_path, monkeypatch):
+    """A scene that is changed is computed; the others are read."""
+    computed = []
+
+    def counted(scene, **others):
+        computed.append(scene)
+        return answer(scene, **others)
+
+    monkeypatch.setattr(answers, "answer", counted)
+    source = tmp_path / "source.py"
+    source.write_text("1")
+    scenes = {f"s{k}": SCENE | {"damping": k} for k in (1, 2, 3)}
+
+    def batch():
+        computed.clear()
+        return answer_batch(scenes, SPREAD, {}, 0, tmp_path / "store", [str(source)])
+
+    first = batch()
+    assert len(computed) == 3
+    scenes["s2"] = SCENE | {"damping": 2.5}
+    second = batch()
+    assert computed == [scenes["s2"]]
+    assert second["gamma2"].values[[0, 2]].tolist() == first["gamma2"].values[[0, 2]].tolist()
+    kept = sorted((tmp_path / "store").glob("*.nc"))
+    assert len(kept) == 4
+    kept[0].write_bytes(b"damaged")
+    assert artifact.read(kept[1])["gamma2"].attrs["units"] == "1"
+    batch()
+    assert len(computed) <= 1
+    source.write_text("2")
+    batch()
+    assert len(computed) == 3

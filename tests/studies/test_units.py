@@ -1,0 +1,80 @@
+"""Quantities with units: what is read, what is refused, and the way back."""
+
+import math
+
+import pytest
+
+from nonsmooth.dimensions import Scales
+from reproduction.errors import ConfigError
+from studies.units import Units, in_si, spelt
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("2 mm", "m", 2e-3),
+        ("1200 kg", "kg", 1200),
+        ("5 %", "1", 0.05),
+        (0.05, "1", 0.05),
+        ("40 kN/m", "N/m", 4e4),
+        ("300 N s/m", "N*s/m", 300),
+        ("0.01 m²/s³", "m**2/s**3", 0.01),
+        ("1.5e-2 m^2/s^3", "m**2/s**3", 0.015),
+        ("15 rad/s", "rad/s", 15),
+        ("2.4 Hz", "rad/s", 2.4 * 2 * math.pi),
+        # a spectral density over frequencies in Hz is 2 pi times that over rad/s
+        ("0.01 m^2/s^4/Hz", "m**2/s**3", 0.01 / (2 * math.pi)),
+    ],
+)
+def test_is_read(text, unit, value):
+    """In SI units; a frequency in Hz counts cycles."""
+    assert in_si(text, unit) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "message"),
+    [
+        ("2", "m", "has no unit; write such as '2 m'"),
+        ("2 s", "m", "is no quantity in m"),
+        ("2 parsnips", "m", "a unit that is not known"),
+        ("two mm", "m", "is no number with a unit"),
+        ("2 kg", "1", "is no plain number"),
+        ("__import__('os')", "m", "is no number with a unit"),
+        (True, "1", "is no number with a unit"),
+    ],
+)
+def test_is_refused(text, unit, message):
+    """One line with the value and the cure."""
+    with pytest.raises(ConfigError, match=message):
+        in_si(text, unit)
+
+
+def test_numbers_go_there_and_back():
+    """A velocity in the user's units is the scene's number times the factor, and back."""
+    units = Units(Scales(length=0.004, time=0.1, force=700.0), {"length": "mm", "time": "min"})
+    velocity = {"length": 1, "time": -1}
+    number = units.number("12 mm/s", velocity)
+    assert number == pytest.approx(12 / 40)
+    assert number * units.factor(velocity) == pytest.approx(12 * 60)
+    assert units.unit(velocity) == "mm min-1"
+    assert units.number(["2 mm", "4 mm"], {"length": 1}) == pytest.approx([0.5, 1.0])
+
+
+def test_dimensionless_numbers_stay():
+    """Without scales nothing has a unit."""
+    assert Units().number(3.0, {"length": 1}) == 3.0
+    assert Units().unit({"length": 1}) == "1"
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (201.93, 2.61, "201.9 ± 2.6 mm² s⁻¹"),
+        (0.0, 0.0, "0 mm² s⁻¹ (exact)"),
+        (3.14159e-7, 2.2e-9, "(3.142 ± 0.022)·10⁻⁷ mm² s⁻¹"),
+        (12.0, 130.0, "12 ± 130 mm² s⁻¹"),
+    ],
+)
+def test_is_spelt_to_two_digits_of_its_error(value, error, text):
+    """As reports have it."""
+    assert spelt(value, error, "mm2 s-1") == text
