@@ -26,6 +26,7 @@ TRACKED = (
     "src",
     "paper",
     "profiles",
+    "studies",
     "docs/speed_pde.pdf",
     "docs/speed_crossing.pdf",
     "environment-lock.txt",
