@@ -24,7 +24,7 @@ from workflow.experiment import (
     label,
     part,
     shards,
-    sweep_halving,
+    step_at,
     swept,
 )
 from workflow.failures import hints

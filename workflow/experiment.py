@@ -35,12 +35,11 @@ def halving_paths(topic: dict, p: str) -> int:
     return min(topic["paths"], round(topic["halving"]["paths"] * max(topic["p"]) / float(p)))
 
 
-def sweep_halving(topic: dict, p: str) -> int:
-    """Choose the paths on which the step is halved in the sweep.
-
-    There are fewer in longer runs, where the effect of halving the step scatters less.
-    """
-    return max(1_000, round(topic["halving_paths"] / max(1.0, float(p) / 100)))
+def step_at(config: dict, topic: str, scene: str, p: float) -> float:
+    """Choose the time step of a scene of the sweep at one p, which is longer in long runs."""
+    sweep = config["sweep"]
+    long = p > sweep["measured"]
+    return sweep["scenes"][scene]["long_step"] if long else config[topic]["step"]
 
 
 def finite(numbers: list[float]) -> list[float]:

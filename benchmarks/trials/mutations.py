@@ -287,6 +287,7 @@ SIZES = [
             ("convergence", "finite_difference", "time_step"),
             ("gamma2", "potentials", "step"),
             ("sweep", "step"),
+            ("sweep", "scenes", "friction_white", "long_step"),
             ("theorems", "ergodicity", "step"),
             ("density", "step"),
             ("limit_theorem", "step"),

@@ -22,6 +22,8 @@ packages `configuration`, `jobs` and `rendering` and the modules `agreement`, `e
     `compared`, `require_agreement`: the asymptotic variance by two methods, side by side.
 `finite_p`
     `probabilities`, `powers_of_p`: formulas for crossing probabilities and their errors.
+`sweep`
+    `crossing_bias`: the bias of the time step in the crossing probabilities of every scene.
 `limit_theorem`
     Samples of the scaled integral, and their distances to the laws of the limit.
 `rates`

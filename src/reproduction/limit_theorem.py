@@ -6,7 +6,7 @@ distribution function is 1 - W_star, eq. (34) of the paper. The distances betwee
 samples and these limits are measured here.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,7 +20,9 @@ from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.scenes.scene import Scene
 
 
-def scaled_integrals(scene: Scene, p: ArrayLike, sampling: Sampling) -> np.ndarray:
+def scaled_integrals(
+    scene: Scene, p: ArrayLike, steps: Sequence[float], sampling: Sampling
+) -> np.ndarray:
     """Simulate Xi_p(1) and max_{t <= 1} |Xi_p(t)|, every p on the same paths.
 
     Parameters
@@ -28,8 +30,10 @@ def scaled_integrals(scene: Scene, p: ArrayLike, sampling: Sampling) -> np.ndarr
     scene : Scene
     p : array_like, shape (k,)
         Increasing scales, "1".
+    steps : sequence of float
+        Longest step up to each p from the one before. The maximum is that over the steps.
     sampling : Sampling
-        The maximum is that over its steps.
+        Its step is not used.
 
     Returns
     -------
@@ -45,7 +49,8 @@ def scaled_integrals(scene: Scene, p: ArrayLike, sampling: Sampling) -> np.ndarr
     def reduce(panel, count):
         return np.stack([panel.total[TOTAL_DELTA, :count], panel.data[PEAK, :count]])
 
-    kept = over_blocks(scene, equal_steps(p, sampling.step), sampling, reduce, control=False)
+    grid = [equal_steps(p, step)[k] for k, step in enumerate(steps)]
+    kept = over_blocks(scene, grid, sampling, reduce, control=False)
     return np.swapaxes(np.concatenate(list(kept), axis=2), 0, 1) / np.sqrt(p)[:, None]
 
 

@@ -210,9 +210,12 @@ def trajectories(section: Mapping) -> dict:
 def every_scene(limit: xr.Dataset, section: Mapping) -> dict:
     """Return the sizes of table 6 and figure 6."""
     times = section["variance"]["times"]
+    longer = [entry["long_step"] for entry in section["scenes"].values()]
     return {
         "paths": _count(section["paths"]),
         "step": _short(section["step"]),
+        "measured": _short(section["measured"]),
+        "long_steps": [_short(min(longer)), _short(max(longer))],
         "settled": _short(times[0]),
         "end": _short(times[-1]),
         "horizon": _short(section["horizon"]),

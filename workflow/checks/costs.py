@@ -127,7 +127,7 @@ def costs(config: dict) -> Iterator[Cost]:
     yield from _sweep(config["sweep"])
     yield from _theorems(config["theorems"])
     yield from _densities(config["density"], config["sweep"]["scenes"])
-    yield from _limit_theorem(config["limit_theorem"], config["sweep"]["scenes"])
+    yield from _limit_theorem(config["limit_theorem"], config["sweep"])
     yield from _plasticity(config["plasticity"])
     yield from _rates(config["rates"])
     rounds = {("speed_against_error", "rounds"): config["speed_against_error"]["rounds"]}
@@ -291,6 +291,8 @@ def _gamma2(topic, known):
 def _sweep(topic):
     own = topic["variance"]
     scenes = [scene_of(topic["scenes"][name]["scene"]) for name in topic["simulated"]]
+    steps = {name: topic["scenes"][name]["long_step"] for name in topic["simulated"]}
+    shortest = min(steps, key=steps.get)
     sizes = _sizes(
         ("sweep",),
         topic,
@@ -302,12 +304,12 @@ def _sweep(topic):
         outputs=["outputs"],
     )
     seconds = 0.0
-    for scene, p in product(scenes, topic["p"]):
-        fewer = max(1000, topic["halving_paths"] / max(1.0, p / 100))
+    for (name, scene), p in product(zip(steps, scenes, strict=True), topic["p"]):
+        step = topic["step"] if p <= topic["measured"] else steps[name]
+        halved = min(p, topic["measured"]) * topic["horizon"]
         seconds += JOB_SECONDS + 1e-4 * topic["outputs"]
-        seconds += _simulated(
-            scene.dimension, topic["paths"] + 3 * fewer, p * topic["horizon"], topic["step"]
-        )
+        seconds += _simulated(scene.dimension, topic["paths"], p * topic["horizon"], step)
+        seconds += _simulated(scene.dimension, 3 * topic["halving_paths"], halved, step)
     yield Cost(sizes, seconds, _sampled(topic["paths"], topic["outputs"]))
     sizes = _sizes(
         ("sweep",),
@@ -315,12 +317,12 @@ def _sweep(topic):
         paths=["variance", "paths"],
         halving=["variance", "halving_paths"],
         times=["variance", "times"],
-        step=["step"],
+        step=["scenes", shortest, "long_step"],
     )
     paths = own["paths"] + 3 * own["halving_paths"]
     seconds = sum(
-        JOB_SECONDS + _simulated(scene.dimension, paths, own["times"][-1], topic["step"])
-        for scene in scenes
+        JOB_SECONDS + _simulated(scene.dimension, paths, own["times"][-1], step)
+        for scene, step in zip(scenes, steps.values(), strict=True)
     )
     yield Cost(sizes, seconds, JOB_BYTES + 64 * max(own["paths"], own["halving_paths"]))
 
@@ -352,13 +354,16 @@ def _densities(topic, known):
     yield _solved(("density", "tolerances"), scenes, topic["tolerances"])
 
 
-def _limit_theorem(topic, known):
-    scenes = [scene_of(known[name]["scene"]) for name in topic["scenes"]]
+def _limit_theorem(topic, sweep):
     sizes = _sizes(("limit_theorem",), topic, paths=["paths"], p=["p"], step=["step"])
-    seconds = sum(
-        JOB_SECONDS + _simulated(scene.dimension, topic["paths"], sum(topic["p"]), topic["step"])
-        for scene in scenes
-    )
+    short = max((p for p in topic["p"] if p <= sweep["measured"]), default=0.0)
+    seconds = 0.0
+    for name in topic["scenes"]:
+        entry = sweep["scenes"][name]
+        dimension = scene_of(entry["scene"]).dimension
+        seconds += JOB_SECONDS + _simulated(dimension, topic["paths"], short, topic["step"])
+        rest = max(topic["p"]) - short
+        seconds += _simulated(dimension, topic["paths"], rest, entry["long_step"])
     yield Cost(sizes, seconds, JOB_BYTES + 64 * topic["paths"] * len(topic["p"]))
 
 

@@ -9,7 +9,11 @@ rule limit_theorem_samples:
     priority: 50
     params:
         **settings("sweep/scenes/{scene}", "scene"),
-        **settings("limit_theorem", "p", "step", "paths"),
+        **settings("limit_theorem", "p", "paths"),
+        steps=lambda wildcards: [
+            step_at(config, "limit_theorem", wildcards.scene, p)
+            for p in config["limit_theorem"]["p"]
+        ],
         seed=config["seed"],
     script:
         "../scripts/limit_theorem/simulate.py"

@@ -6,8 +6,7 @@ rule sweep_variance:
     output:
         "<results>/sweep/{scene}/variance.nc",
     params:
-        **settings("sweep/scenes/{scene}", "scene"),
-        **settings("sweep", "step"),
+        **settings("sweep/scenes/{scene}", "scene", step="long_step"),
         **settings("sweep/variance", "times", "paths", "halving_paths"),
         seed=config["seed"],
     script:
@@ -22,8 +21,8 @@ rule sweep_crossing:
     priority: 100
     params:
         **settings("sweep/scenes/{scene}", "scene", "threshold"),
-        **settings("sweep", "horizon", "outputs", "step", "paths"),
-        halving_paths=lambda wildcards: sweep_halving(config["sweep"], wildcards.p),
+        **settings("sweep", "horizon", "outputs", "measured", "paths", "halving_paths"),
+        step=lambda wildcards: step_at(config, "sweep", wildcards.scene, float(wildcards.p)),
         seed=config["seed"],
         p=number("p"),
     script:

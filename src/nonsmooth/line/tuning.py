@@ -42,6 +42,9 @@ class FiniteDifferences:
     # most a sixth of the estimate by halving it (C_b = 0.02 ... 10), and at a share of a third it
     # is half of it
     outside: float = 0.05
+    steady: float = 1e-10  # chosen: v is taken to grow linearly once its gain of a step differs by
+    #                        less between all nodes; far below the error of any affordable grid
+    look: int = 100  # chosen: steps between two looks, which cost half a step
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,13 @@
 """The paper's scheme: first order in time, second in space, honest about its error."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
-from nonsmooth.line import eigenfunctions, finite_differences
+from nonsmooth.line import eigenfunctions, finite_differences, tuning
 
 SCENE = ns.Scene("friction", n=10)  # the kinks at +-0.1 are nodes of all meshes below
 TAU = [0.4, 5.0]
@@ -27,6 +29,23 @@ def test_other_starting_points():
     assert abs(v - exact[1]) < v_error < 1e-2
     with pytest.raises(SceneError, match="starts from a node"):
         finite_differences.moments(ns.Scene("friction", start={"y": 0.511}), [1.0], 6.0, 601, 0.1)
+
+
+@pytest.mark.parametrize("observable", ["y", "y + 0.5"])
+def test_growth_that_is_steady_is_not_marched(monkeypatch, observable):
+    """What is left out is linear; it is far below the error, and most of the steps."""
+    scene, T = ns.Scene("friction", n=10, observable=observable), [1.0, 60.0, 100.0]
+    solves = []
+    solve = finite_differences.dgttrs
+    monkeypatch.setattr(finite_differences, "dgttrs", lambda *a: solves.append(1) or solve(*a))
+    found = finite_differences.moments(scene, T, HALF_WIDTH, 241, 0.02)
+    fewer = len(solves)
+    never = replace(tuning.FINITE_DIFFERENCES, steady=-1.0)
+    monkeypatch.setattr(tuning, "FINITE_DIFFERENCES", never)
+    marched = finite_differences.moments(scene, T, HALF_WIDTH, 241, 0.02)
+    assert fewer < (len(solves) - fewer) / 2
+    np.testing.assert_allclose(found[1], marched[1], rtol=1e-9)
+    np.testing.assert_allclose(found[0], marched[0], rtol=1e-9, atol=1e-12)
 
 
 def test_first_order_in_time(reference):

@@ -13,14 +13,14 @@ CONFIG = read(ROOT / "config.yaml")
 # seconds on one core, and megabytes of the largest job, of a run at the paper's sizes, by the
 # benchmark files of its jobs; two jobs at a time, so that waiting is left out
 MEASURED = {
-    "convergence": (53, 243),
+    "convergence": (22, 243),
     "crossing": (129, 369),
     "density": (67, 592),
     "gamma2": (146, 468),
-    "limit_theorem": (69, 294),
+    "limit_theorem": (30, 294),
     "plasticity": (27, 331),
     "rates": (13, 399),
-    "sweep": (278, 354),
+    "sweep": (150, 354),
     "theorems": (14, 205),
     "trajectories": (6, 291),
     "variance": (20, 296),

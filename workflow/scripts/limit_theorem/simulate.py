@@ -9,7 +9,7 @@ from reproduction.jobs.job import produce
 from reproduction.limit_theorem import scaled_integrals
 
 
-def simulate(scene, p, step, paths, seed, threads):
+def simulate(scene, p, steps, paths, seed, threads):
     """Simulate every p in one job, because to start a job takes longer than to simulate a small p.
 
     Returns
@@ -17,8 +17,8 @@ def simulate(scene, p, step, paths, seed, threads):
     xarray.Dataset
     """
     scene = Scene(**scene)
-    sampling = Sampling(step, paths, (seed, "limit theorem"), threads=threads)
-    final, maximum = scaled_integrals(scene, p, sampling)
+    sampling = Sampling(max(steps), paths, (seed, "limit theorem"), threads=threads)
+    final, maximum = scaled_integrals(scene, p, steps, sampling)
     over = ("p", "path")
     return artifact.dataset(
         "Samples of the scaled integral of the observable",

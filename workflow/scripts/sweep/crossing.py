@@ -2,23 +2,22 @@
 
 import numpy as np
 
-from nonsmooth.crossing.counting import (
-    DESCRIPTIONS,
-    crossing_estimate,
-    first_passage_bias,
-    first_passage_counts,
-)
+from nonsmooth.crossing.counting import DESCRIPTIONS, crossing_estimate, first_passage_counts
 from nonsmooth.paths import time_grids
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
+from reproduction.sweep import crossing_bias
 
 
-def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, seed, threads):
+def crossing(
+    scene, threshold, horizon, outputs, p, step, measured, paths, halving_paths, seed, threads
+):
     """Count the paths that have crossed sqrt(p) b by p T, for equidistant T.
 
-    The bias of the time step is what halving it changes on the same noise.
+    The bias of the time step is measured at p or, at p above `measured`, follows from those of
+    gamma^2 and at that p.
 
     Returns
     -------
@@ -29,8 +28,10 @@ def crossing(scene, threshold, horizon, outputs, p, step, paths, halving_paths, 
     sampling = Sampling(step, paths, (seed, f"sweep, p = {p}"), threads=threads)
     halving = Sampling(step, halving_paths, (seed, f"sweep, halving, p = {p}"), threads=threads)
     crossed = first_passage_counts(scene, threshold, horizons, p, sampling)
-    bias, bias_error = first_passage_bias(scene, threshold, horizons, p, halving)
     estimate = crossing_estimate(np.cumsum(crossed), paths)
+    bias, bias_error = crossing_bias(
+        scene, threshold, horizons, p, estimate["probability"], measured, halving
+    )
     return artifact.dataset(
         "Threshold crossing probability by Monte Carlo",
         f"{paths} paths of {scene}, b = {threshold}, p = {p}",
