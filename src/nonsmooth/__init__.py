@@ -9,6 +9,7 @@ What is studied: `Scene`, with the noises `White`, `Langevin`, `Hamiltonian`, `O
 
 - `asymptotic_variance`: gamma^2, `mean`: E g, and `variance`: the variance of the integral at
   given times
+- `asymptotic_variance_sensitivity`: the derivative of gamma^2 by a parameter
 - `invariant_density`, `spectral_gap`: where the state is in the long run, and how soon it forgets
   its start
 - `simulate`: paths, or the moments of the integral

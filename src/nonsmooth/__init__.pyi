@@ -18,6 +18,9 @@ from .scenes.noises import Langevin as Langevin
 from .scenes.noises import OrnsteinUhlenbeck as OrnsteinUhlenbeck
 from .scenes.noises import White as White
 from .scenes.scene import Scene as Scene
+from .sensitivity.gamma2 import (
+    asymptotic_variance_sensitivity as asymptotic_variance_sensitivity,
+)
 from .statistics.asymptotic_variance import asymptotic_variance as asymptotic_variance
 from .statistics.invariant_density import invariant_density as invariant_density
 from .statistics.mean import mean as mean

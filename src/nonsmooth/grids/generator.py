@@ -5,6 +5,7 @@ faces of discontinuous elements, where their sign decides from which side a valu
 """
 
 from collections.abc import Container, Mapping
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
@@ -15,6 +16,9 @@ from nonsmooth.errors import SceneError
 from nonsmooth.grids.elements import Axis
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
+
+_SIDE = 1e-6  # distance from an edge at which its sides are seen, over the smallest element
+_JUMP = 1e-3  # relative difference of both sides that is a jump
 
 
 def evaluate(
@@ -73,12 +77,29 @@ def start_row(scene: Scene, axes: Mapping[sympy.Symbol, Axis], side: int = 1) ->
     return reduce(np.kron, [part.toarray()[0] for part in parts])
 
 
+@dataclass(frozen=True)
+class Change:
+    """Derivatives of a scene's equations with respect to a parameter.
+
+    Attributes
+    ----------
+    drift : dict
+        Maps symbols to the derivatives of their drifts, formulas in the state.
+    diffusion : float
+        Derivative of sigma^2 / 2.
+    """
+
+    drift: Mapping[sympy.Symbol, sympy.Expr]
+    diffusion: float
+
+
 def assemble(
     scene: Scene,
     axes: Mapping[sympy.Symbol, Axis],
     equations: Container[sympy.Symbol] | None = None,
+    change: Change | None = None,
 ) -> sp.csr_array:
-    """Assemble the generator, or the part of it that belongs to some of the equations.
+    """Assemble the generator, the part of it that belongs to some equations, or its derivative.
 
     Parameters
     ----------
@@ -88,6 +109,8 @@ def assemble(
         Maps symbols to `Axis`; the first varies slowest.
     equations : container of sympy.Symbol, optional
         The variables whose drift and diffusion are included; all unless given.
+    change : Change, optional
+        Of the scene; the derivative of the generator is assembled instead.
 
     Returns
     -------
@@ -95,6 +118,7 @@ def assemble(
         Its rows sum to zero.
     """
     drift = scene.numerical_drift()
+    own = change or Change(drift, scene.noise.sigma**2 / 2)
     size = [len(axis.nodes) for axis in axes.values()]
     generator = sp.csr_array((np.prod(size), np.prod(size)))
     for place, symbol in enumerate(axes):
@@ -105,22 +129,50 @@ def assemble(
         def spread(matrix, place=place):
             return _kron(size[:place], matrix, size[place + 1 :])
 
-        speed = evaluate(rate, axes)
-        generator += sp.diags_array(speed) @ spread(axis.slope)
+        speed, value = evaluate(rate, axes), sympy.sympify(own.drift[symbol])
+        moved = speed if change is None else _at_nodes(value, axes, symbol)
+        generator += sp.diags_array(moved) @ spread(axis.slope)
         if symbol == scene.noise.driven:
             # where the drift leads inward, a condition at the end would make a layer there
             inward = (speed * evaluate(symbol, axes) < 0).astype(float)
             diffusion = spread(axis.curvature) + sp.diags_array(inward) @ spread(axis.release)
-            generator += scene.noise.sigma**2 / 2 * diffusion
+            generator += own.diffusion * diffusion
         if len(axis.faces):
             across = evaluate(rate, axes, {symbol: axis.faces})
-            jump = spread(axis.jump)
+            flow, jump = evaluate(value, axes, {symbol: axis.faces}), spread(axis.jump)
             for lift, side in (
-                (axis.lift_left, np.maximum(across, 0)),
-                (axis.lift_right, np.minimum(across, 0)),
+                (axis.lift_left, np.where(across > 0, flow, 0.0)),
+                (axis.lift_right, np.where(across < 0, flow, 0.0)),
             ):
                 generator += spread(lift) @ (sp.diags_array(side) @ jump)
     return generator.tocsr()
+
+
+def _at_nodes(rate, axes, symbol):
+    """Values of the derivative of a drift at the nodes.
+
+    It may jump at an edge that continuous elements share. There it is the mean of both
+    sides, with the widths of the elements as weights, as they have them in the slope.
+    """
+    axis = axes[symbol]
+    values = evaluate(rate, axes)
+    if axis.curvature is None or not rate.has(sympy.Piecewise):
+        return values
+    near = _SIDE * np.min(np.diff(axis.edges))
+    sides = [evaluate(rate, axes, {symbol: axis.nodes + side * near}) for side in (-1, 1)]
+    widths = np.diff(axis.edges)
+    share = np.full(len(axis.nodes), 0.5)
+    share[:: len(axis.local) - 1] = np.concatenate(
+        [[0.0], widths[:-1] / (widths[:-1] + widths[1:]), [1.0]]
+    )
+    place = list(axes).index(symbol)
+    lengths = [len(other.nodes) for other in axes.values()]
+    shape = [1] * len(lengths)
+    shape[place] = -1
+    share = np.broadcast_to(share.reshape(shape), lengths).ravel()
+    mean = share * sides[0] + (1 - share) * sides[1]
+    jumps = np.abs(sides[1] - sides[0]) > _JUMP * np.max(np.abs(values))
+    return np.where(jumps, mean, values)
 
 
 def _kron(before, matrix, after):

@@ -7,6 +7,7 @@ eigenfunctions of A, to nearly full precision. The manual page is `docs/methods/
 
 - `potential.potential`, `potential.depth`: Phi = -log m, up to a constant.
 - `quadrature.asymptotic_variance`, `quadrature.mean`, `quadrature.density`: gamma^2, E g and m.
+- `spectral_elements.mesh`: the elements of Galerkin's method.
 - `eigenfunctions.spectrum`, `eigenfunctions.moments`: eigenpairs of -A; mean and variance of
   int_0^t g at finite times.
 - `dry_friction.friction_variance`: gamma^2 for g(y) = y in closed form but for one integral.

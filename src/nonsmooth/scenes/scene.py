@@ -6,7 +6,7 @@ import itertools
 import math
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -244,6 +244,12 @@ class Scene:
     def with_observable(self, observable: str) -> "Scene":
         """Return the same scene with another observable, whose variables may be others."""
         return self._changed(observable=observable)
+
+    def with_parameter(self, name: str, value: float) -> "Scene":
+        """Return the same scene with another `n`, `damping` or, of its noise, `sigma`."""
+        if name == "sigma":
+            return self._changed(noise=replace(self.noise, sigma=value))
+        return self._changed(**{name: value})
 
     def with_start(self, start: dict[str, float]) -> "Scene":
         """Return the same scene from another starting point."""

@@ -10,4 +10,5 @@ public function, which chooses between methods by the scene and the tolerance.
 - `spectral_gap.spectral_gap`: the rate at which correlations decay
 - `gamma2_on_grids`, `moments_on_grids`: gamma^2 and v(0, tau) on grids of elements
 - `sampled_gamma2`, `sampled_moments`: the same by Monte Carlo
+- `combined_grids.combined`: a functional of three and four variables to a tolerance.
 """

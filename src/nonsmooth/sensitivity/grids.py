@@ -1,0 +1,87 @@
+"""Derivatives of gamma^2 with two to four state variables, by the differentiated equations.
+
+gamma^2 = 2 E[(g - E g) u] with -A u = g - E g. Let A' and g' be the derivatives of the generator
+and of g, -A h = 2 (g - E g) u - gamma^2, and -A v = A' u + g' - E[...]. As E[A f] = 0 for every f,
+the derivative of the mean of f is E[A' w], w the Poisson solution of f. Hence
+
+    (gamma^2)' = E[A' h + 2 (g - E g) v + 2 (g' - (E g)') u],  (E g)' = E[A' u + g'].
+
+On a grid this is the derivative of the gamma^2 of that grid.
+"""
+
+import numpy as np
+
+from nonsmooth.grids import uniform_refinement
+from nonsmooth.grids.generator import assemble, evaluate
+from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, solver
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.sensitivity import tuning
+from nonsmooth.sensitivity.parameters import change, derivative, value_of
+from nonsmooth.statistics.combined_grids import combined
+
+
+def elasticity(scene: Scene, parameter: str, tol: float) -> tuple[float, float]:
+    """Return the derivative of log gamma^2 with respect to the logarithm of a parameter.
+
+    Parameters
+    ----------
+    scene : Scene
+        With two to four state variables.
+    parameter : str
+    tol : float
+        Absolute error wanted.
+
+    Returns
+    -------
+    value, error : float
+        The error is that of `uniform_refinement.refined` or of `combined`. It may be above `tol`.
+    """
+    if uniform_refinement.applies(scene):
+        found = uniform_refinement.refined(
+            fitted(scene, depth_for(tol), 1),
+            lambda grid: (elasticity_on(scene, parameter, grid, tol), tuning.GRIDS.rounding),
+            lambda error, value: error / tol,
+        )
+        if found.met:
+            return float(found.value), float(found.error)
+    rest = combined(
+        scene,
+        tol,
+        lambda scene, grid, accuracy: elasticity_on(scene, parameter, grid, accuracy),
+        lambda value, tol: tol,
+    )
+    return rest.value, rest.error
+
+
+def elasticity_on(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> float:
+    """Compute the elasticity of gamma^2 on one grid.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    parameter : str
+    grid : Grid
+    accuracy : float
+        Residual of the Poisson solver.
+
+    Returns
+    -------
+    float
+    """
+    axes, solve = solver(scene, grid)
+    generator = assemble(scene, axes, change=change(scene, parameter))
+
+    def changed(f, parity):
+        return solve.fold(generator @ solve.unfold(f, parity))
+
+    g = solve.fold(evaluate(scene.numerical_observable(), axes))
+    own = evaluate(derivative(scene, scene.observable_expression, parameter), axes)
+    u, mean = solve.solve(g, ODD, accuracy)
+    g = g - mean
+    h, half = solve.solve(g * u, EVEN, accuracy)
+    own = solve.fold(own)
+    v, mean = solve.solve(changed(u, ODD) + own, ODD, accuracy)
+    _, slope = solve.solve(changed(h, EVEN) + g * v + (own - mean) * u, EVEN, accuracy)
+    return value_of(scene, parameter) * slope / half if half else np.inf

@@ -1,0 +1,127 @@
+"""Derivatives of gamma^2 with one state variable.
+
+With Phi = -log m, a = sigma^2 / 2 and the Poisson solution u of mean 0, gamma^2 is the largest
+value of 4 E[(g - E g) u] - 2 a E[u'^2] over all u. The derivative of a largest value is that of the
+expression at a fixed u:
+
+    d gamma^2 = 4 E[dg u] - E[(dPhi - E dPhi) (4 (g - E g) u - 2 a u'^2)] - 2 da E[u'^2].
+
+It is exact also on elements, where u is the largest among piecewise polynomials.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+import sympy
+from numpy.polynomial import legendre
+
+from nonsmooth.grids.elements import energy, lagrange, lobatto, summed
+from nonsmooth.line import spectral_elements
+from nonsmooth.line.potential import depth
+from nonsmooth.refine import Refined, until_agreement
+from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.penalties import n as penalization
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import y
+from nonsmooth.sensitivity import tuning
+from nonsmooth.sensitivity.parameters import derivative, value_of
+
+
+def elasticity(scene: Scene, parameter: str, tol: float) -> Refined:
+    """Return the derivative of log gamma^2 with respect to the logarithm of a parameter.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the state y and white noise.
+    parameter : str
+    tol : float
+        Absolute error wanted.
+
+    Returns
+    -------
+    Refined
+        The error is the change by raising the degree of the elements, and rounding.
+    """
+    settings, scene = tuning.LINE, scene.with_start({})
+    value = value_of(scene, parameter)
+
+    def solve(degree):
+        gamma2, slope = _gamma2_and_derivative(scene, parameter, degree)
+        return value * slope / gamma2
+
+    return until_agreement(
+        settings.degrees,
+        solve,
+        lambda found: settings.safety * abs(found[-1] - found[-2]) + settings.rounding,
+        lambda _, error: error <= tol,
+    )
+
+
+def _gamma2_and_derivative(scene, parameter, degree):
+    """Both on elements of one degree."""
+    sigma = scene.noise.sigma
+    at, weight, values, slopes, place = _elements(scene, degree)
+    g = vectorised(scene.numerical_observable(), (y,))(at)
+    total = weight.sum()
+    g = g - np.sum(weight * g) / total
+    stiffness = summed(
+        [energy(own, sigma**2 / 2 * w) for own, w in zip(slopes, weight, strict=True)]
+    )
+    right = np.zeros(len(stiffness))
+    np.add.at(right, place, np.einsum("eq,qk->ek", weight * g, values))
+    u = _solution(stiffness, right)[place]
+    slope = np.einsum("eqk,ek->eq", slopes, u)
+    u = np.einsum("qk,ek->eq", values, u)
+    u = u - np.sum(weight * u) / total
+
+    def mean(f):
+        return np.sum(weight * f) / total
+
+    bend = _change_of_depth(scene, parameter)(at)
+    own = vectorised(_change_of_observable(scene, parameter), (y,))(at)
+    spread = 4 * g * u - sigma**2 * slope**2
+    change = 4 * mean(own * u) - mean((bend - mean(bend)) * spread)
+    if parameter == "sigma":
+        change -= 2 * sigma * mean(slope**2)
+    return 2 * mean(g * u), change
+
+
+def _elements(scene, degree):
+    """Gauss points with weights times m, values and slopes of the nodal functions, and places."""
+    edges, phi = spectral_elements.mesh(scene), depth(scene)
+    nodes, _, _ = lobatto(degree)
+    points, weights = legendre.leggauss(degree + tuning.LINE.extra_points)
+    values, slopes = lagrange(nodes, points)
+    half = np.diff(edges)[:, None] / 2
+    at = np.array([left + (right - left) / 2 * (points + 1) for left, right in pairwise(edges)])
+    place = np.arange(len(half))[:, None] * degree + np.arange(degree + 1)
+    return at, weights * half * np.exp(-phi(at)), values, slopes / half[:, :, None], place
+
+
+def _solution(stiffness, right):
+    """Solve a balanced system in which the value at the middle is 0."""
+    middle = len(stiffness) // 2
+    free = np.delete(np.arange(len(stiffness)), middle)
+    scale = 1 / np.sqrt(np.diag(stiffness)[free])
+    matrix = stiffness[np.ix_(free, free)] * np.outer(scale, scale)
+    found = np.zeros(len(stiffness))
+    found[free] = scale * np.linalg.solve(matrix, scale * right[free])
+    return found
+
+
+def _change_of_depth(scene, parameter):
+    """Return the derivative of Phi, a function of arrays."""
+    sigma = scene.noise.sigma
+    if parameter == "sigma":
+        phi = depth(scene)
+        return lambda at: -2 / sigma * phi(at)
+    if parameter == "damping":
+        return lambda at: (at / sigma) ** 2
+    penalty = scene.mechanics.penalty.potential(y) if scene.mechanics.is_friction else 0
+    slope = sympy.diff(penalty, penalization).subs(penalization, sympy.Float(scene.n))
+    return vectorised(2 * slope / sigma**2, (y,))
+
+
+def _change_of_observable(scene, parameter):
+    return derivative(scene, scene.observable_expression, parameter)
