@@ -10,6 +10,8 @@ from .errors import NonsmoothError as NonsmoothError
 from .estimate import Estimate as Estimate
 from .paths.simulation import simulate as simulate
 from .plotting.drawing import plot as plot
+from .reliability.index import reliability_index as reliability_index
+from .reliability.mean_time import mean_time_to_failure as mean_time_to_failure
 from .reliability.quantiles import crossing_threshold as crossing_threshold
 from .reliability.quantiles import failure_time as failure_time
 from .scenes.noises import Hamiltonian as Hamiltonian

@@ -39,6 +39,38 @@ class Grid:
     attempts: int = 6  # chosen: shifts of a pass that does not contain the root
 
 
+@dataclass(frozen=True)
+class TransformedMean:
+    """The mean time from the transform on circles around 0."""
+
+    line_tolerance: float = 1e-6  # chosen: one variable, seconds
+    plane_tolerance: float = 1e-3  # chosen: two variables, a minute
+    times: tuple[float, float] = (0.1, 4.0)  # chosen: over the mean, what a grid is made for
+    small: float = 0.1  # chosen: z times the mean at which it is known to ten per cent
+    later: float = 0.01  # chosen: z, over that, at which rare long times are looked for
+    searches: int = 40  # chosen: of z, each at most half of the one before
+    # chosen: of the circles, over the inverse mean; the leading pole is beyond the first unless
+    # the start is much nearer to one threshold than to the other
+    radii: tuple[float, ...] = (0.3, 0.1, 0.03, 0.01)
+    nodes: int = 15  # chosen: of half a circle, a multiple of 3; (0.3)^10 is 6e-6, (0.1)^10 nothing
+    # chosen: largest difference of two circles, over what the unseen error of F is on the smallest
+    agreement: float = 5.0
+
+
+@dataclass(frozen=True)
+class SampledMean:
+    """The mean time by Monte Carlo."""
+
+    tolerance: float = 2e-2  # chosen: relative, seconds
+    paths: int = 1024  # chosen: of the pilot
+    left: float = 0.02  # chosen: part of the paths that may not have crossed at its end
+    longer: float = 4.0  # chosen: factor by which it is prolonged
+    most_steps: float = 1e5  # chosen: of each path of the pilot, some seconds
+    tail: float = 0.05  # chosen: of the tolerance, part of the paths left at the end of the run
+
+
+TRANSFORMED_MEAN = TransformedMean()
+SAMPLED_MEAN = SampledMean()
 SCALE = Scale()
 SEARCH = Search()
 GRID = Grid()

@@ -1,0 +1,52 @@
+"""The reliability index beta of a crossing probability."""
+
+import numpy as np
+import xarray as xr
+from scipy.special import ndtri
+
+from nonsmooth.errors import SceneError, quoted
+
+_NEEDED = "probability", "probability_error", "lower", "upper"
+
+
+def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
+    """Turn crossing probabilities into reliability indices beta = -Phi^-1(W).
+
+    Parameters
+    ----------
+    crossing : xarray.Dataset
+        From `crossing_probability` or `state_crossing_probability`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the same dimensions and with the same attributes: `reliability_index`, beta, "1";
+        `lower` and `upper`, the indices of the upper and of the lower limit of W; and
+        `reliability_index_error`, the largest change of beta if W changes by its error, inf where
+        that leaves it open.
+
+    Raises
+    ------
+    SceneError
+        If it is no such dataset.
+    """
+    if not isinstance(crossing, xr.Dataset) or not set(_NEEDED) <= set(crossing.data_vars):
+        raise SceneError(
+            f"crossing is {quoted(crossing)}; give what crossing_probability has returned"
+        )
+    W, error, lower, upper = (crossing[name] for name in _NEEDED)
+    # near W = 1 the complement has more digits
+    survival = crossing.get("survival", 1 - W)
+    beta = xr.where(W < 0.5, -ndtri(W), ndtri(survival))
+    # where W is 0 or 1 itself, so is beta infinite, and its error
+    with np.errstate(invalid="ignore"):
+        moved = [abs(-ndtri((W + sign * error).clip(0, 1)) - beta) for sign in (-1, 1)]
+    return xr.Dataset(
+        {
+            "reliability_index": beta,
+            "reliability_index_error": np.maximum(*moved).fillna(np.inf),
+            "lower": -ndtri(upper),
+            "upper": -ndtri(lower),
+        },
+        attrs=crossing.attrs,
+    )
