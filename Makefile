@@ -73,7 +73,7 @@ diagrams: env ## measure speed against error anew, and refresh the copies in doc
 # uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute
 define environment
 $(PYTHON) -m venv $(1)
-$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --compile-bytecode --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
+$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
 endef
 
 env: $(VENV)/installed ## the environment alone, in .venv

@@ -34,8 +34,6 @@ rule crossing_gamma2:
     """Halve the time step in gamma^2"""
     output:
         "<results>/crossing/gamma2.nc",
-    # first, because it compiles a kernel of its own while another core compiles that of the shards
-    priority: 200
     params:
         **settings("crossing", "scene", "step"),
         **settings("crossing/halving", time="gamma2_time", paths="gamma2_paths"),

@@ -32,6 +32,8 @@ rule potentials:
     """Solve and simulate scenes with general potentials"""
     output:
         "<results>/gamma2/potentials/gamma2.nc",
+    # one long job, which must not be the last
+    priority: 150
     params:
         **settings("gamma2/potentials", "scenes", "tolerance"),
         **settings("gamma2/potentials", "times", "paths", "halving_paths", "step"),

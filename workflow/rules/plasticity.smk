@@ -5,6 +5,8 @@ rule plasticity_variance:
     """Compute gamma^2 and kappa of the permanent deformation"""
     output:
         "<results>/plasticity/variance.nc",
+    # one long job, which must not be the last
+    priority: 150
     params:
         **settings("plasticity", "ground", "oscillator", "tolerance"),
         seed=config["seed"],

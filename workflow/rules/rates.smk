@@ -5,7 +5,8 @@ rule measure_rates:
     """Measure the distances to the non-smooth limit"""
     output:
         "<results>/rates/rates.nc",
-    priority: 50
+    # one long job, which must not be the last
+    priority: 150
     params:
         **settings("rates", "scenes", "horizon", "resolution", "paths", "weak"),
         **settings("rates", "level", longest="longest_step"),

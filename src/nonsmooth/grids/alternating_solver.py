@@ -69,8 +69,9 @@ class AlternatingSolver:
         self._shift = shift
         identity = sp.eye_array(self._oscillator)
         self._resolvents = [SparseFactors(shift * identity - t) for t in self._transport]
-        self._noise_factors = {
-            sign: scipy.linalg.lu_factor(shift * np.eye(len(part)) - part)
+        # a product with an inverse takes half the time of two triangular solutions
+        self._noise_resolvents = {
+            sign: scipy.linalg.inv(shift * np.eye(len(part)) - part)
             for sign, part in self._noise.items()
         }
         self._measure = self._measure_near_origin(rest)
@@ -144,14 +145,13 @@ class AlternatingSolver:
 
     def _precondition(self, values, parity, adjoint):
         """Apply 2 a (a - T)^-1 (a - L)^-1, or its transpose, in the place of -A^-1."""
+        inverse = self._noise_resolvents
 
         def noise(values):
             return self._by_noise(
                 values,
                 parity,
-                lambda sign, columns: scipy.linalg.lu_solve(
-                    self._noise_factors[sign], columns, trans=int(adjoint)
-                ),
+                lambda sign, columns: (inverse[sign].T if adjoint else inverse[sign]) @ columns,
             )
 
         def transport(values):

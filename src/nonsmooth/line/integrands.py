@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
+import scipy
 import sympy
-from scipy.optimize import brentq
 
 from nonsmooth.errors import SceneError, quoted
 from nonsmooth.grids.grading import distinct
@@ -93,7 +93,7 @@ class Integrands:
         # with damping alone Phi reaches that depth here; with friction it does so nearer to 0
         end = self.scene.noise.sigma * np.sqrt(settings.depth / self.scene.damping)
         if self.depth(end) > settings.depth:
-            end = brentq(lambda y: self.depth(y) - settings.depth, 0.0, end)
+            end = scipy.optimize.brentq(lambda y: self.depth(y) - settings.depth, 0.0, end)
         edges = _within([-end, -self.knot, 0.0, self.knot, end], end)
         functions = [vectorised(f, (symbols.y,)) for f in switches(self.varying)]
         # Kinks may be so close together that only the points of shorter elements tell them apart:
