@@ -7,11 +7,14 @@ from reproduction.configuration.layers import Layers
 from reproduction.errors import ConfigError
 from workflow.checks.configuration import check
 
-# config.yaml, then what the command line lays over it
-given = workflow.config_settings
-defaults = [] if given.replace_workflow_config else ["config.yaml"]
+# config.yaml, then what the command line lays over it, or the workflow of which this is a module
+given, module = workflow.config_settings, not workflow.modifier.is_main_snakefile()
+ROOT = Path(workflow.current_basedir.get_path_or_uri(secret_free=False)).resolve()
+defaults = [] if given.replace_workflow_config and not module else [ROOT / "config.yaml"]
+files = [] if module else workflow.overwrite_configfiles
 try:
-    check(Layers.of_files([*defaults, *workflow.overwrite_configfiles], given.config))
+    layers = Layers.of_files([*defaults, *files], config if module else given.config)
+    check(layers)
 except ConfigError as error:
     sys.exit(f"error: {error}")
 
@@ -30,8 +33,11 @@ from workflow.experiment import (
 from workflow.failures import hints
 from workflow.studies import Studies
 
+if module:
+    config.update(layers.merged)
+else:
 
-configfile: "config.yaml"
+    configfile: "config.yaml"
 
 
 PAPER = config["outputs"]["paper"]
@@ -79,7 +85,8 @@ include: "workflow/rules/studies.smk"
 
 
 for job in workflow.rules:
-    complete(job)
+    if Path(str(job.snakefile)).is_relative_to(ROOT):
+        complete(job)
 
 
 onstart:

@@ -7,6 +7,7 @@ from pathlib import Path
 import grimp
 
 PACKAGES = ("nonsmooth", "reproduction", "studies")
+ROOT = Path(__file__).resolve().parents[1]
 
 
 @lru_cache(maxsize=1)
@@ -28,7 +29,7 @@ def sources(script: str) -> list[str]:
     list of str
         Paths relative to the repository, sorted.
     """
-    tree = ast.parse(Path(script).read_text(encoding="utf-8"))
+    tree = ast.parse((ROOT / script).read_text(encoding="utf-8"))
     named = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGES):
@@ -44,4 +45,4 @@ def sources(script: str) -> list[str]:
 
 def _file(module):
     path = Path("src", *module.split("."))
-    return str(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
+    return str(path / "__init__.py" if (ROOT / path).is_dir() else path.with_suffix(".py"))

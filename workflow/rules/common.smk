@@ -1,4 +1,5 @@
 # What all rules share, written once: paths, parameters by look-up, and what `complete` adds.
+import re
 from functools import partial
 
 
@@ -11,6 +12,11 @@ pathvars:
 # no output may be empty
 outputflags:
     partial(ensure, non_empty=True),
+
+
+def own(path):
+    """Name a file of this repository, also where another workflow uses it as a module."""
+    return path if Path.cwd() == ROOT else str(ROOT / path)
 
 
 def settings(section, *keys, **renamed):
@@ -52,13 +58,15 @@ def complete(job):
     job.message = job.message or job.docstring
     # snakemake sets these three only if the rule itself declares an input, a log and a benchmark
     job.input_modifier = job.log_modifier = job.benchmark_modifier = job.output_modifier
-    job.set_input(modules=sources(f"workflow/{job.script.removeprefix('../')}"))
+    modules = sources(f"workflow/{job.script.removeprefix('../')}")
+    job.set_input(modules=[own(module) for module in modules])
     # the paper may lie elsewhere
-    output, results = Path(job.output[0]), Path(config["outputs"]["results"])
+    prefix = workflow.modifier.path_modifier.prefix or ""
+    output, results = Path(job.output[0]), Path(prefix, config["outputs"]["results"])
     inside = output.is_relative_to(results)
     name = (output.relative_to(results) if inside else Path("paper", output.name)).with_suffix("")
     job.set_log(f"<logs>/{name}.log")
     job.benchmark = f"<benchmarks>/{name}.tsv"
     job.conda_env = "../envs/environment.yaml"
-    if job.name.startswith(("table_", "check_")):
+    if re.search("(^|_)(table|check)_", job.name):  # a module's rules may have a prefix
         workflow.localrules(job.name)

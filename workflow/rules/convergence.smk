@@ -34,7 +34,7 @@ rule check_convergence:
             "<results>/convergence/finite_difference/n={n}.nc",
             n=map(label, finite(config["convergence"]["n"])),
         ),
-        printed="paper/printed.yaml",
+        printed=own("paper/printed.yaml"),
     output:
         "<results>/convergence/check.nc",
     params:
@@ -49,7 +49,7 @@ rule table_4:
         spectral=rules.check_convergence.input.spectral,
         finite_difference=rules.check_convergence.input.finite_difference,
         check=rules.check_convergence.output[0],
-        printed="paper/printed.yaml",
+        printed=own("paper/printed.yaml"),
     output:
         table("table_4"),
     params:

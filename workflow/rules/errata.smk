@@ -4,7 +4,7 @@
 rule errata:
     """Evaluate the errata, printed against mended"""
     input:
-        printed="paper/printed.yaml",
+        printed=own("paper/printed.yaml"),
     output:
         "<results>/errata/errata.nc",
     script:

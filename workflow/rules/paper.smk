@@ -39,7 +39,7 @@ rule values:
         deformation=rules.check_plasticity.output[0],
         deformation_variance=rules.plasticity_variance.output[0],
         rates=rules.measure_rates.output[0],
-        printed="paper/printed.yaml",
+        printed=own("paper/printed.yaml"),
     output:
         "<results>/paper/values.json",
         "<results>/paper/numbers.json",
@@ -68,9 +68,9 @@ rule paper:
         figures=rules.figures.input,
         tables=rules.tables.input,
         values=rules.values.output[0],
-        template="paper/paper.typ",
-        printed="paper/printed.yaml",
-        recorded=["docs/speed_pde.pdf", "docs/speed_crossing.pdf"],
+        template=own("paper/paper.typ"),
+        printed=own("paper/printed.yaml"),
+        recorded=[own("docs/speed_pde.pdf"), own("docs/speed_crossing.pdf")],
     output:
         report(PAPER, caption="../report/paper.rst", category="Paper"),
     localrule: True

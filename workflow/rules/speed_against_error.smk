@@ -7,7 +7,9 @@ SPEED = config["speed_against_error"]
 AXES = {diagram: {"x": "seconds", "y": "error"} for diagram in SPEED["diagrams"]}
 AXES |= {"pathwise": {"x": "size", "y": "error"}, "cost": {"x": "size", "y": "seconds"}}
 # sources of the other libraries' programs, and the python of their environment if there is one
-PEERS = sorted(map(str, Path("benchmarks/peers").glob("*.py")))
+PEERS = sorted(
+    own(f"benchmarks/peers/{path.name}") for path in (ROOT / "benchmarks/peers").glob("*.py")
+)
 PEERS_PYTHON = SPEED["peers"] if Path(SPEED["peers"]).exists() else None
 
 

@@ -16,7 +16,7 @@ rule table_7:
     """Typeset table 7, the margins of the drift condition"""
     input:
         drift_condition=rules.drift_condition.output[0],
-        printed="paper/printed.yaml",
+        printed=own("paper/printed.yaml"),
     output:
         table("table_7"),
     script:

@@ -18,7 +18,7 @@ from reproduction.errors import ArtifactError
 from reproduction.jobs.files import write_whole
 
 _CHECKSUM = b"\nnonsmooth sha256 "  # begins the last line
-_LOCK = Path("environment-lock.txt")  # in the folder from which the workflow runs
+_LOCK = Path(__file__).parents[3] / "environment-lock.txt"
 
 
 def dataset(title: str, summary: str, coords: Mapping, variables: Mapping) -> xr.Dataset:

@@ -4,12 +4,14 @@ A script that calls one of these functions lists `PRINTED` among its rule's inpu
 """
 
 import re
+from pathlib import Path
 
 import yaml
 
 from reproduction.errors import ArtifactError
 
 PRINTED = "paper/printed.yaml"
+_ROOT = Path(__file__).parents[3]  # the workflow may run elsewhere
 
 
 def printed_values(label: str) -> dict:
@@ -62,7 +64,7 @@ def numbered(text: str) -> str:
 
 def _read(key):
     try:
-        with open(PRINTED, encoding="utf-8") as file:
+        with open(_ROOT / PRINTED, encoding="utf-8") as file:
             return dict(yaml.safe_load(file)[key])
     except (OSError, ValueError, TypeError, KeyError, yaml.YAMLError) as error:
         reason = " ".join(str(error).split())

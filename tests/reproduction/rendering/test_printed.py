@@ -3,6 +3,7 @@
 import pytest
 
 from reproduction.errors import ArtifactError
+from reproduction.rendering import printed
 from reproduction.rendering.printed import numbered, printed_values
 
 
@@ -29,10 +30,10 @@ def test_an_unknown_label_is_refused():
 )
 def test_a_damaged_file_is_one_line(tmp_path, monkeypatch, content):
     """Missing, empty, cut off, of another kind: the cure is the tracked file."""
-    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "printed.yaml"
+    monkeypatch.setattr(printed, "PRINTED", str(path))
     if content is not None:
-        (tmp_path / "paper").mkdir()
-        (tmp_path / "paper" / "printed.yaml").write_bytes(content)
+        path.write_bytes(content)
     with pytest.raises(ArtifactError, match=r"printed\.yaml has no readable entry") as error:
         numbered("")
     assert "\n" not in str(error.value)
