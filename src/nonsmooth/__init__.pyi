@@ -20,6 +20,7 @@ from .scenes.noises import Langevin as Langevin
 from .scenes.noises import OrnsteinUhlenbeck as OrnsteinUhlenbeck
 from .scenes.noises import White as White
 from .scenes.scene import Scene as Scene
+from .sensitivity.crossing import crossing_sensitivity as crossing_sensitivity
 from .sensitivity.gamma2 import (
     asymptotic_variance_sensitivity as asymptotic_variance_sensitivity,
 )

@@ -192,6 +192,7 @@ def coupled(
     times: ArrayLike,
     sampling: Sampling,
     levels: tuple[float, float] = EVERYWHERE,
+    noise_of: Scene | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Simulate paths with a step and with half of it on the same noise.
 
@@ -204,6 +205,10 @@ def coupled(
     levels : (float, float)
         Lower and upper level whose first passage by D is timed.
 
+    noise_of : Scene, optional
+        A scene from the same start whose random numbers are used, by which ensembles of
+        scenes with other parameters are compared path by path; the scene's own unless given.
+
     Returns
     -------
     change : numpy.ndarray, shape (t, 4, 4)
@@ -215,7 +220,7 @@ def coupled(
 
     def run(job):
         block, count = job
-        panel, other = (_new_panel(scene, sampling, block) for _ in range(2))
+        panel, other = (_new_panel(noise_of or scene, sampling, block) for _ in range(2))
         passage = np.full((2, count), np.inf)
         sums, first, began = np.zeros((len(grid), 4, 4)), 0, 0.0
         for (steps, h), alike in groupby(grid):

@@ -28,6 +28,38 @@ class Grids:
     rounding: float = 1e-9  # chosen: of the elasticity; sparse factors lose some digits
 
 
+@dataclass(frozen=True)
+class Crossing:
+    """The derivative of crossing probabilities, times the parameter."""
+
+    solved: float = 1e-4  # chosen: error by the deterministic method unless asked for another
+    # chosen: the same by Monte Carlo, and the tolerance from which on it is faster, some seconds
+    sampled: float = 3e-2
+
+
+@dataclass(frozen=True)
+class Differences:
+    """Central differences of solved probabilities."""
+
+    steps: tuple[float, ...] = (
+        0.06,
+        0.03,
+        0.015,
+    )  # chosen: parts of the parameter, long ones first
+    share: float = 0.2  # chosen: part of the tolerance that the errors of the solutions may have
+
+
+@dataclass(frozen=True)
+class CommonNoise:
+    """Central differences of paths that share their noise."""
+
+    apart: float = 0.1  # chosen: first part of the parameter by which it is changed
+    nearest: float = 0.01  # chosen: smallest part; few paths tell smaller ones apart
+
+
 GAMMA2 = Gamma2()
+CROSSING = Crossing()
+DIFFERENCES = Differences()
+COMMON_NOISE = CommonNoise()
 LINE = Line()
 GRIDS = Grids()

@@ -1,0 +1,91 @@
+"""Derivatives of crossing probabilities against scaling laws, closed forms and each other."""
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import SceneError
+from references import FRICTION
+
+HORIZONS = np.array([0.5, 2.0, 8.0])
+
+
+@pytest.mark.parametrize(
+    ("method", "tol"),
+    [("monte_carlo", 3e-2), pytest.param("deterministic", 1e-3, marks=pytest.mark.slow)],
+)
+def test_scaling_with_sigma(method, tol):
+    """A linear scene: int y is linear in sigma, so that W depends on threshold / sigma alone.
+
+    Hence the derivative by sigma is that by the threshold times -b / sigma; by Monte Carlo both
+    have a noise of their own. Three errors, biases in them: a false alarm in a thousand seeds.
+    """
+    scene = ns.Scene("elasto_plastic", ns.White(0.8))
+    by_sigma, by_threshold = (
+        ns.crossing_sensitivity(scene, 0.6, HORIZONS, name, method=method, tol=tol, seed=seed)
+        for seed, name in enumerate(["sigma", "threshold"])
+    )
+    error = by_sigma["derivative_error"] + 0.6 / 0.8 * by_threshold["derivative_error"]
+    exact = -0.6 / 0.8 * by_threshold["derivative"]
+    times = 3 if method == "monte_carlo" else 1
+    assert np.all(np.abs(by_sigma["derivative"] - exact) <= times * error)
+
+
+@pytest.mark.slow
+def test_scale_of_the_limit_theorem():
+    """In the limit of large p the derivative by the threshold is that of Brownian motion.
+
+    At p = 1e6 the threshold is kappa / sqrt(p) = 3e-4 farther away, a part of 5e-4 of it.
+    """
+    run = ns.crossing_sensitivity(FRICTION, 0.6, HORIZONS, "threshold", p=1e6, tol=1e-3)
+    gamma = np.sqrt(ns.asymptotic_variance(FRICTION).value)
+    near, far = (ns.brownian_crossing(b / gamma, HORIZONS) for b in (0.6 - 1e-4, 0.6 + 1e-4))
+    exact = (np.asarray(far) - np.asarray(near)) / 2e-4
+    assert np.all(np.abs(run["derivative"] - exact) <= run["derivative_error"] + 5e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("parameter", ["threshold", "p", "damping", "n", "sigma"])
+def test_loose_tolerances_hold(parameter):
+    """The error that is stated to a loose tolerance contains the value of a tight one."""
+    scene = FRICTION.with_n(3)
+    loose, tight = (
+        ns.crossing_sensitivity(scene, 0.6, HORIZONS, parameter, method="deterministic", tol=tol)
+        for tol in (1e-2, 1e-5)
+    )
+    gap = np.abs(loose["derivative"] - tight["derivative"])
+    assert np.all(gap <= loose["derivative_error"] + tight["derivative_error"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("parameter", ["threshold", "p", "damping", "n", "sigma"])
+def test_common_noise(parameter):
+    """Paths with common noise agree with solutions, within five of their errors.
+
+    The errors are standard errors and biases: a false alarm in a million at each horizon.
+    """
+    scene = FRICTION.with_n(3)
+    exact = ns.crossing_sensitivity(scene, 0.6, HORIZONS, parameter, tol=1e-3)
+    run = ns.crossing_sensitivity(
+        scene, 0.6, HORIZONS, parameter, method="monte_carlo", tol=0.05, seed=1
+    )
+    error = 5 * run["derivative_error"] + exact["derivative_error"]
+    assert np.all(np.abs(run["derivative"] - exact["derivative"]) <= error)
+
+
+def test_more_variables_are_sampled():
+    """A farther threshold is crossed less often, under colored noise too."""
+    scene = ns.Scene("friction", "langevin", n=5)
+    run = ns.crossing_sensitivity(scene, 0.3, [4.0], "threshold", tol=0.1)
+    assert run.attrs["method"] == "monte_carlo"
+    assert run["derivative"][0] < -3 * run["derivative_error"][0]
+
+
+def test_refusals():
+    """Each is one line that names the offender."""
+    with pytest.raises(SceneError, match="parameter is 'b'"):
+        ns.crossing_sensitivity(FRICTION, 0.6, HORIZONS, "b")
+    with pytest.raises(SceneError, match="n = inf has no derivative"):
+        ns.crossing_sensitivity(FRICTION.with_n(np.inf), 0.6, HORIZONS, "n")
+    with pytest.raises(SceneError, match="method is 'asymptotic'"):
+        ns.crossing_sensitivity(FRICTION, 0.6, HORIZONS, "p", method="asymptotic")
