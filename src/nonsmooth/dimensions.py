@@ -28,7 +28,7 @@ with w white noise of density S_0, it becomes the noise `KanaiTajimi` with the s
 (omega_g T)^2, the damping 2 zeta_g omega_g T and the intensity (omega_g T)^2 times that of white
 noise. This is the paper's form of the filter: the spectrum of a is S_0 omega_g^4 / D with
 D = (omega_g^2 - omega^2)^2 + 4 zeta_g^2 omega_g^2 omega^2. That of Kanai and Tajimi has
-4 zeta_g^2 omega_g^2 omega^2 in the numerator, too, which matters above omega_g.
+4 zeta_g^2 omega_g^2 omega^2 in the numerator, too, which is more except far below omega_g.
 """
 
 import math

@@ -123,7 +123,7 @@ def _described(found, asked, units, known, summary, remark):
         variables[name] = (values.dims, values.values * units.factor(powers), attrs)
     result = xr.Dataset(variables).set_coords(list(found.coords))
     first = next(name for name in asked.values if name in result.data_vars)
-    result[first].attrs["method"] = found.attrs.get("method", asked.title.lower())
+    result[first].attrs["method"] = found.attrs.get("method", "deterministic")
     if remark:
         result[first].attrs["comment"] = remark
     result.attrs = {"title": asked.title, "summary": summary}

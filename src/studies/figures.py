@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from studies.questions import Question
-from studies.units import pretty
+from studies.units import in_figures
 
 BLUE = "#0072B2"
 COLORS = [BLUE, "#D55E00", "#009E73", "#56B4E9", "#000000"]
@@ -20,7 +20,7 @@ _LIMITS = ("lower", "upper")
 
 def labelled(variable: xr.DataArray) -> str:
     """Spell what is drawn with its unit."""
-    unit = pretty(variable.attrs["units"])
+    unit = in_figures(variable.attrs["units"])
     return f"{variable.attrs['long_name']}, {unit}" if unit else variable.attrs["long_name"]
 
 
@@ -63,7 +63,7 @@ def _curves(data, name):
     if name == "probability":
         axis.set(ylabel=name, ylim=(0, min(1.02, max(1.05 * axis.get_ylim()[1], 1e-9))))
     else:
-        axis.set_ylabel(f"{name}, {pretty(data[name].attrs['units'])}".rstrip(", "))
+        axis.set_ylabel(f"{name}, {in_figures(data[name].attrs['units'])}".rstrip(", "))
     if data[name].ndim > 1:
         axis.legend(title="threshold", fontsize=8)
     return figure
@@ -79,10 +79,10 @@ def levels(data: xr.Dataset, name: str) -> list[str]:
 def _level(curve):
     if "threshold" in curve.coords:
         unit = curve["threshold"].attrs["units"]
-        return f"{float(curve['threshold']):.6g} {pretty(unit)}".rstrip()
+        return f"{float(curve['threshold']):.6g} {in_figures(unit)}".rstrip()
     if "threshold_lower" in curve.coords:
         ends = (f"{float(curve[f'threshold_{end}']):.6g}" for end in ("lower", "upper"))
-        return f"{', '.join(ends)} {pretty(curve['threshold_lower'].attrs['units'])}".rstrip()
+        return f"{', '.join(ends)} {in_figures(curve['threshold_lower'].attrs['units'])}".rstrip()
     return None
 
 
@@ -101,9 +101,9 @@ def _densities(data, names):
         seen = np.flatnonzero(value > 1e-3 * value.max())
         axis.set_xlim(float(over[seen[0]]), float(over[seen[-1]]))
         axis.set_ylim(0, None)
-        unit = pretty(over.attrs["units"])
+        unit = in_figures(over.attrs["units"])
         axis.set_xlabel(_symbol(over.name) + (f", {unit}" if unit else ""))
-        own = pretty(data[name].attrs["units"])
+        own = in_figures(data[name].attrs["units"])
         axis.set_ylabel("density" + (f", {own}" if own else ""))
     return figure
 
@@ -118,11 +118,11 @@ def _joint(variable):
         other = tuple(k for k, dim in enumerate(variable.dims) if dim != over.name)
         seen = np.flatnonzero(variable.values.max(axis=other) > 1e-3 * variable.values.max())
         limit(float(over[seen[0]]), float(over[seen[-1]]))
-    names = [f"{_symbol(v.name)}, {pretty(v.attrs['units'])}".rstrip(", ") for v in (second, first)]
+    names = [f"{_symbol(v.name)}, {in_figures(v.attrs['units'])}".rstrip(", ") for v in (second, first)]
     axis.set(xlabel=names[0], ylabel=names[1])
     axis.grid(False)
     bar = figure.colorbar(image, ax=axis)
-    bar.set_label(f"joint density, {pretty(variable.attrs['units'])}".rstrip(", "))
+    bar.set_label(f"joint density, {in_figures(variable.attrs['units'])}".rstrip(", "))
     return figure
 
 

@@ -13,7 +13,7 @@ from studies import drawing, figures
 from studies.questions import QUESTIONS
 from studies.scenes import QUANTITIES
 from studies.study import Study
-from studies.units import in_si, pretty, spelt, told
+from studies.units import in_figures, in_si, pretty, spelt, told
 
 SHOWN = 12  # scenes up to which all of them are tabled
 
@@ -88,7 +88,7 @@ def _map(study, variable, values):
     for dim in variable.dims[1:]:
         over = variable[dim]
         title += f", at {dim} = {float(over[-1]):.6g} {pretty(over.attrs['units'])}".rstrip()
-    label = f"{variable.name}, {pretty(variable.attrs['units'])}".rstrip(", ")
+    label = f"{variable.name}, {in_figures(variable.attrs['units'])}".rstrip(", ")
     numbers = {name: _numbers(name, values) for name, values in study.axes.items()}
     figure = figures.maps(values.values, study.axes, label, numbers)
     return {"title": title, "svg": drawing.as_svg(figure)}

@@ -142,6 +142,11 @@ def pretty(unit: str) -> str:
     return "" if unit == "1" else unit.translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
 
 
+def in_figures(unit: str) -> str:
+    """Spell a unit as the labels of figures have it, whose fonts lack some superscripts."""
+    return "" if unit == "1" else re.sub(r"([A-Za-z]+)(-?\d+)", r"\1$^{\2}$", unit)
+
+
 def spelt(value: float, error: float, unit: str = "1") -> str:
     """Spell a number with its error, to two digits of the error: 200.5 ± 2.6 mm² s⁻¹.
 
