@@ -42,7 +42,7 @@ class Studies:
         return FOLDER / f"{name}.yaml"
 
     def wanted(self, targets: Iterable[str]) -> list[str]:
-        """Return the names of the studies that some targets of snakemake ask for."""
+        """Return the names of the studies that snakemake's arguments ask for."""
         targets = set(targets)
         if "studies" in targets:
             return self.names

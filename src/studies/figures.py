@@ -1,6 +1,7 @@
 """Figures of answers: curves with their error bands, densities, maps over a sweep."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from studies.questions import Question
-from studies.units import in_figures
+from studies.units import in_figures, pretty
 
 BLUE = "#0072B2"
 COLORS = [BLUE, "#D55E00", "#009E73", "#56B4E9", "#000000"]
@@ -47,43 +48,45 @@ def of_answer(data: xr.Dataset, asked: Question) -> list[Figure]:
 
 
 def _curves(data, name):
-    """Draw values over time with the band in which the truth is, a curve for each threshold."""
+    """Draw values over time with the band in which the truth is, one for each threshold or so."""
     figure, axis = plt.subplots(figsize=(WIDTH, HEIGHT), constrained_layout=True)
-    over = data[data[name].dims[-1]]
-    curves = data.expand_dims("threshold") if data[name].ndim == 1 else data
-    for k in range(curves.sizes["threshold"]):
-        curve, color = curves.isel(threshold=k), COLORS[k % len(COLORS)]
+    *first, last = data[name].dims
+    over, several = data[last], first[0] if first else "curve"
+    curves = data if first else data.expand_dims(several)
+    for k in range(curves.sizes[several]):
+        curve, color = curves.isel({several: k}), COLORS[k % len(COLORS)]
         value, error = curve[name].values, curve[f"{name}_error"].values
         low, high = value - error, value + error
-        if name == "probability":
-            low, high = curve["lower"].values, curve["upper"].values
+        if set(_LIMITS) <= set(data.data_vars):
+            low, high = (curve[limit].values for limit in _LIMITS)
         axis.fill_between(over, low, high, color=color, alpha=0.3, linewidth=0)
-        axis.plot(over, value, color=color, marker="o", markersize=3, label=_level(curve))
+        label = _level(curve, several) if first else None
+        axis.plot(over, value, color=color, marker="o", markersize=3, label=label)
     axis.set(xlabel=labelled(over), xlim=(0, None))
+    top = 1.05 * axis.get_ylim()[1]
     if name == "probability":
-        axis.set(ylabel=name, ylim=(0, min(1.02, max(1.05 * axis.get_ylim()[1], 1e-9))))
+        axis.set(ylabel=name, ylim=(0, min(1.02, max(top, 1e-9))))
     else:
         axis.set_ylabel(f"{name}, {in_figures(data[name].attrs['units'])}".rstrip(", "))
-    if data[name].ndim > 1:
-        axis.legend(title="threshold", fontsize=8)
+        axis.set_ylim(min(0, axis.get_ylim()[0]), top)
+    if first:
+        axis.legend(title=several, fontsize=8)
     return figure
 
 
 def levels(data: xr.Dataset, name: str) -> list[str]:
-    """Spell the thresholds of the curves of a variable; none if there is one curve alone."""
+    """Spell what tells the curves of a variable apart; nothing if there is one curve alone."""
     if data[name].ndim == 1:
         return []
-    return [_level(data.isel(threshold=k)) for k in range(data.sizes["threshold"])]
+    several = data[name].dims[0]
+    return [_level(data.isel({several: k}), several, pretty) for k in range(data.sizes[several])]
 
 
-def _level(curve):
-    if "threshold" in curve.coords:
-        unit = curve["threshold"].attrs["units"]
-        return f"{float(curve['threshold']):.6g} {in_figures(unit)}".rstrip()
-    if "threshold_lower" in curve.coords:
-        ends = (f"{float(curve[f'threshold_{end}']):.6g}" for end in ("lower", "upper"))
-        return f"{', '.join(ends)} {in_figures(curve['threshold_lower'].attrs['units'])}".rstrip()
-    return None
+def _level(curve, several, spell=in_figures):
+    if several in curve.coords:
+        return f"{float(curve[several]):.6g} {spell(curve[several].attrs['units'])}".rstrip()
+    ends = (f"{float(curve[f'{several}_{end}']):.6g}" for end in ("lower", "upper"))
+    return f"{', '.join(ends)} {spell(curve[f'{several}_lower'].attrs['units'])}".rstrip()
 
 
 def _densities(data, names):
@@ -118,7 +121,9 @@ def _joint(variable):
         other = tuple(k for k, dim in enumerate(variable.dims) if dim != over.name)
         seen = np.flatnonzero(variable.values.max(axis=other) > 1e-3 * variable.values.max())
         limit(float(over[seen[0]]), float(over[seen[-1]]))
-    names = [f"{_symbol(v.name)}, {in_figures(v.attrs['units'])}".rstrip(", ") for v in (second, first)]
+    names = [
+        f"{_symbol(v.name)}, {in_figures(v.attrs['units'])}".rstrip(", ") for v in (second, first)
+    ]
     axis.set(xlabel=names[0], ylabel=names[1])
     axis.grid(False)
     bar = figure.colorbar(image, ax=axis)
@@ -153,17 +158,19 @@ def maps(
     """
     names = sorted(axes, key=lambda name: -len(axes[name]))[:2]
     cube = xr.DataArray(values.reshape([len(axes[name]) for name in axes]), dims=list(axes))
+    if len(names) == 1:
+        return _line(cube, names[0], numbers, label)
     rest = [name for name in axes if name not in names]
-    panels = cube.stack(panel=rest) if rest else cube.expand_dims(panel=[()])
-    count = panels.sizes["panel"]
+    across, up = names
+    panels = cube.transpose(*rest, up, across).values.reshape(-1, len(axes[up]), len(axes[across]))
+    points = list(product(*(axes[name] for name in rest)))
+    count = len(points)
     columns = min(count, 4)
     rows = -(-count // columns)
     figure, grid = plt.subplots(
         rows, columns, figsize=(2.2 * columns + 1.0, 2.0 * rows + 0.3), squeeze=False,
         sharex=True, sharey=True, constrained_layout=True,
     )  # fmt: skip
-    if len(names) == 1:
-        return _lines(figure, grid, cube, names[0], numbers, label)
     low, high = float(values.min()), float(values.max())
     logarithmic = low > 0 and high > 30 * low
     norm = plt.matplotlib.colors.LogNorm(low, high) if logarithmic else None
@@ -173,17 +180,13 @@ def maps(
         if k >= count:
             axis.set_visible(False)
             continue
-        panel = panels.isel(panel=k)
         image = axis.pcolormesh(
-            range(len(axes[names[0]])), range(len(axes[names[1]])),
-            panel.transpose(names[1], names[0]).values, norm=norm, cmap="viridis",
-            shading="nearest", **limits,
+            range(len(axes[across])), range(len(axes[up])), panels[k],
+            norm=norm, cmap="viridis", shading="nearest", **limits,
         )  # fmt: skip
         axis.grid(False)
-        if rest:
-            chosen = np.unravel_index(k, [len(axes[name]) for name in rest])
-            text = ", ".join(f"{n} = {axes[n][i]}" for n, i in zip(rest, chosen, strict=True))
-            axis.set_title(text, fontsize=8)
+        told = ", ".join(f"{name} = {value}" for name, value in zip(rest, points[k], strict=True))
+        axis.set_title(told, fontsize=8)
     _ticks(grid, axes, names)
     figure.colorbar(image, ax=grid, label=label)
     return figure
@@ -202,10 +205,9 @@ def _ticks(grid, axes, names):
         row[0].set_ylabel(names[1].replace("_", " "))
 
 
-def _lines(figure, grid, cube, name, numbers, label):
+def _line(cube, name, numbers, label):
     """Draw a sweep of one parameter as a line."""
-    axis = grid[0, 0]
-    figure.set_size_inches(WIDTH, HEIGHT)
+    figure, axis = plt.subplots(figsize=(WIDTH, HEIGHT), constrained_layout=True)
     axis.plot(numbers[name], cube.values, color=BLUE, marker="o", markersize=3)
     if min(numbers[name]) > 0 and max(numbers[name]) > 30 * min(numbers[name]):
         axis.set_xscale("log")

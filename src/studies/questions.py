@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
 from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.crossing.state.crossing import state_crossing_probability
+from nonsmooth.reliability.quantiles import crossing_threshold, failure_time
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.invariant_density import invariant_density
 from nonsmooth.statistics.mean import mean
@@ -34,6 +35,16 @@ VARIABLES = {
 _DENSITIES = {(name,): powers for name, powers in VARIABLES.items()} | {
     ("y", "x"): {"length": 2, "time": -1},
     ("eta", "y"): {"length": 2, "time": -3},
+}
+
+# of all questions about the crossing of the integral
+_CROSSING = {
+    "p": PLAIN,
+    "method": PLAIN,
+    "tol": PLAIN,
+    "step": TIME,
+    "paths": PLAIN,
+    "order": PLAIN,
 }
 
 
@@ -134,18 +145,33 @@ QUESTIONS: dict[str, Question] = {
             "threshold_lower": (INTEGRAL, "lower end of the interval"),
             "threshold_upper": (INTEGRAL, "upper end of the interval"),
         },
-        {
-            "threshold": INTEGRAL,
-            "horizons": TIME,
-            "p": PLAIN,
-            "method": PLAIN,
-            "tol": PLAIN,
-            "step": TIME,
-            "paths": PLAIN,
-            "precision": PLAIN,
-            "order": PLAIN,
-        },
+        {"threshold": INTEGRAL, "horizons": TIME, "precision": PLAIN} | _CROSSING,
         required=("threshold", "horizons"),
+    ),
+    "crossing_threshold": Question(
+        "Threshold that is crossed with a probability",
+        crossing_threshold,
+        {
+            "threshold": (INTEGRAL, "threshold of the integral of g"),
+            "lower": (INTEGRAL, "the threshold is above"),
+            "upper": (INTEGRAL, "the threshold is below"),
+            "probability": (PLAIN, "probability of having crossed it"),
+            "horizon": (TIME, "time"),
+        },
+        {"probability": PLAIN, "horizons": TIME, "sides": PLAIN} | _CROSSING,
+        required=("probability", "horizons"),
+    ),
+    "failure_time": Question(
+        "Time by which a threshold is crossed with a probability",
+        failure_time,
+        {
+            "time": (TIME, "time by which the integral of g has left the interval"),
+            "lower": (TIME, "the time is above"),
+            "upper": (TIME, "the time is below"),
+            "probability": (PLAIN, "probability of having left it"),
+        },
+        {"threshold": INTEGRAL, "probability": PLAIN} | _CROSSING,
+        required=("threshold",),
     ),
     "state_crossing_probability": Question(
         "Probability that the state crosses",

@@ -4,7 +4,8 @@
 STUDIES = Studies(config.get("studies", {}))
 
 try:
-    STUDIES.check(getattr(workflow.dag_settings, "targets", ()))
+    # the targets; snakemake itself tells them only after this file
+    STUDIES.check(sys.argv[1:])
 except ConfigError as error:
     sys.exit(f"error: {error}")
 
