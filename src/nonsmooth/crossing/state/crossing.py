@@ -39,6 +39,7 @@ def state_crossing_probability(
     seed: int | tuple = 0,
     precision: str | None = None,
     threads: int | None = None,
+    envelope: str | None = None,
 ) -> xr.Dataset:
     """Probability that a variable of the state leaves an interval before a time.
 
@@ -60,7 +61,7 @@ def state_crossing_probability(
         ``"deterministic"`` is for a variable that is a state by itself, as y where neither a
         potential nor colored noise acts, or with one other variable and a finite n. Unless given,
         it is chosen for these, and ``"monte_carlo"`` for all others, with two variables if `tol`
-        is so loose that it is faster, and if `step`, `paths` or `precision` are given.
+        is so loose that it is faster, and if `step`, `paths`, `precision` or `envelope` are given.
     tol : float, optional
         Absolute error wanted; unless given, 1e-8 and 1e-4 for ``"deterministic"`` with one and two
         variables, and 1e-2 for ``"monte_carlo"``. By Monte Carlo the number of paths and the time
@@ -75,6 +76,9 @@ def state_crossing_probability(
         ``"monte_carlo"`` only; ``"float32"`` unless given.
     threads : int, optional
         All cores unless given.
+    envelope : str, optional
+        s >= 0, a formula in ``t``, such as ``"t*exp(1 - t)"``: non-stationary noise s(t) sigma dW;
+        ``"monte_carlo"`` only.
 
     Returns
     -------
@@ -109,6 +113,7 @@ def state_crossing_probability(
     times = require_increasing("horizons", horizons)
     method = None if method is None else require_choice("method", method, METHODS)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision}
+    options["envelope"] = envelope
     given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
     given |= {"seed": require_seed(seed), "threads": require_threads(threads)}
     names = _fitting(asked, given) if method is None else [method]
@@ -142,7 +147,7 @@ def _solver(asked):
 
 def _fitting(asked, given):
     """Name the methods to try in turn."""
-    if _solver(asked) is None or {"step", "paths", "precision"} & given.keys():
+    if _solver(asked) is None or {"step", "paths", "precision", "envelope"} & given.keys():
         return ["monte_carlo"]
     if "tol" not in given:
         return ["deterministic", "monte_carlo"]
@@ -182,6 +187,7 @@ _OPTIONS: dict[str, Callable] = {
     "step": lambda step: require_positive("step", step),
     "paths": lambda paths: require_count("paths", paths),
     "precision": lambda precision: require_choice("precision", precision, PRECISIONS),
+    "envelope": lambda envelope: envelope,  # is read where its values are wanted
 }
 
 # Each takes a StateCrossing, the horizons, and those of the other parameters that it has. It

@@ -25,6 +25,7 @@ def sampled_state_crossing(
     step: float | None = None,
     paths: int | None = None,
     precision: str = "float32",
+    envelope: str | None = None,
 ) -> tuple[dict, dict]:
     """Average the probabilities of paths to have left the interval.
 
@@ -37,7 +38,7 @@ def sampled_state_crossing(
     asked : StateCrossing
     times : numpy.ndarray, shape (t,)
         Increasing, positive.
-    seed, threads, tol, step, paths, precision
+    seed, threads, tol, step, paths, precision, envelope
         As for `state_crossing_probability`.
 
     Returns
@@ -61,7 +62,7 @@ def sampled_state_crossing(
     label = seed if step and paths else labelled(seed, "pilot")
     for _ in range(tuning.SAMPLED.attempts):
         sampling = Sampling(own_step, own_paths, label, threads=threads, precision=precision)
-        counts, found = _sample(asked, times, sampling)
+        counts, found = _sample(asked, times, sampling, envelope)
         off = distance(counts, own_paths)
         bias, error = found[0]["step_bias"], found[0]["step_bias_error"]
         share = MONTE_CARLO.spread_share * tol
@@ -95,10 +96,10 @@ def _coarsest(asked, times):
     return step
 
 
-def _sample(asked, times, sampling):
+def _sample(asked, times, sampling, envelope):
     """Return the sum of the probabilities to have left, and values and attributes."""
     levels = asked.lower, asked.upper
-    sums = crossed(asked.scene, asked.scene.observable, levels, times, sampling)
+    sums = crossed(asked.scene, asked.scene.observable, levels, times, sampling, envelope)
     paths = sampling.paths
     counts, change, square = np.clip(sums[:, 0], 0.0, paths), sums[:, 1] / paths, sums[:, 2] / paths
     # what doubling the step changes is (2^q - 1) times the bias; if no path shows a change, the

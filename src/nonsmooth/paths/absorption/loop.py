@@ -22,6 +22,7 @@ from nonsmooth.paths.time_loop import (
     pieces,
 )
 
+STATIONARY = np.empty(0)  # no factors of the noise
 _FAR = 40.0  # exponents of crossing within a step beyond which its probability, 4e-18, is nothing
 
 
@@ -52,6 +53,7 @@ def march_survival(
     interval: Interval,
     before: np.ndarray,
     survival: np.ndarray,
+    scale: np.ndarray = STATIONARY,
 ) -> None:
     """Advance two panels on the same noise, the second with steps twice as long.
 
@@ -70,11 +72,14 @@ def march_survival(
         Values of the row now, of fine and coarse paths; kept up to date.
     survival : numpy.ndarray, shape (2, lanes)
         Probabilities to have stayed inside; kept up to date.
+    scale : numpy.ndarray, shape (2 steps,) or (0,)
+        Factors of the noise in the fine steps; empty if there are none.
     """
     for first, last in pieces(steps):
         if not survival.any():
             return
-        _march(fine, coarse, panel, other, lanes, last - first, interval, before, survival)
+        own = scale[2 * first : 2 * last]
+        _march(fine, coarse, panel, other, lanes, last - first, interval, before, survival, own)
         count(3 * (last - first))
 
 
@@ -82,15 +87,18 @@ def compile_march_survival(fine: Any, coarse: Any, panel: Panel) -> None:
     """Compile `march_survival` for two sets of coefficients and the precision of a panel."""
     nowhere = Interval(0, -math.inf, math.inf, 0.0)
     with announced(_march):
-        _march(fine, coarse, panel, panel, 0, 0, nowhere, np.empty((2, 0)), np.empty((2, 0)))
+        nothing = np.empty((2, 0))
+        _march(fine, coarse, panel, panel, 0, 0, nowhere, nothing, nothing, STATIONARY)
 
 
 @kernel
-def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival):
+def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival, scale):
     words, data, _ = of_known_shape(panel)
     _, joined, _ = of_known_shape(other)
     for k in range(2 * steps):
         odd = k % 2 == 1
+        own = scale[k] if len(scale) > 0 else 1.0
+        joint = math.sqrt((scale[k - 1] ** 2 + own**2) / 2) if odd and len(scale) > 0 else 1.0
         normal = 1 if odd and fine.normals == 1 else 0
         for end in range(2):
             mechanical_flow(fine, data, end == 0, end == 1, lanes)
@@ -98,20 +106,34 @@ def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival)
                 if normal == 0:
                     normals(words, data, lanes)
                 join_noise(fine, data, joined, normal, odd, lanes)
+                if len(scale) > 0:
+                    _multiply(data, normal, fine.normals, own, lanes)
                 noise_kick(fine, data, normal, lanes)
-        _survive(data, interval, fine.step, before[0], survival[0], lanes)
+        _survive(data, interval, fine.step * own**2, before[0], survival[0], lanes)
         if odd:
+            if len(scale) > 0:
+                _multiply(joined, 0, 2, joint, lanes)
             for end in range(2):
                 mechanical_flow(coarse, joined, end == 0, end == 1, lanes)
                 if end == 0:
                     noise_kick(coarse, joined, 0, lanes)
-            _survive(joined, interval, coarse.step, before[1], survival[1], lanes)
+            _survive(joined, interval, coarse.step * joint**2, before[1], survival[1], lanes)
 
 
 @inlined
-def _survive(data, interval, step, before, survival, lanes):
-    """Multiply the probabilities with those of having stayed inside during the last step."""
-    variance = interval.intensity * step
+def _multiply(data, first, count, factor, lanes):
+    for row in range(first, first + count):
+        for i in range(lanes):
+            data[row, i] *= factor
+
+
+@inlined
+def _survive(data, interval, span, before, survival, lanes):
+    """Multiply the probabilities with those of having stayed inside during the last step.
+
+    Parameters are as for `march_survival`; `span` is the step times the square of its factor.
+    """
+    variance = interval.intensity * span
     lower, upper = interval.lower, interval.upper
     for i in range(lanes):
         start, end = before[i], float(data[interval.row, i])

@@ -3,7 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nonsmooth.paths.absorption.loop import Interval, compile_march_survival, march_survival
+from nonsmooth.paths.absorption.envelope import scales
+from nonsmooth.paths.absorption.loop import (
+    STATIONARY,
+    Interval,
+    compile_march_survival,
+    march_survival,
+)
 from nonsmooth.paths.ensembles import require_finite
 from nonsmooth.paths.kernels.panel import STATE, new_panel
 from nonsmooth.paths.parallel import parallel
@@ -15,7 +21,12 @@ from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 
 def crossed(
-    scene: Scene, variable: str, levels: tuple[float, float], times: ArrayLike, sampling: Sampling
+    scene: Scene,
+    variable: str,
+    levels: tuple[float, float],
+    times: ArrayLike,
+    sampling: Sampling,
+    envelope: str | None = None,
 ) -> np.ndarray:
     """Sum up the probabilities of paths to have left an interval.
 
@@ -30,6 +41,8 @@ def crossed(
         Increasing.
     sampling : Sampling
         With the shorter of the two steps; its scheme must share the noise of two steps.
+    envelope : str, optional
+        Of the noise, see `envelope.scales`.
 
     Returns
     -------
@@ -40,7 +53,7 @@ def crossed(
     Raises
     ------
     SceneError
-        If a path diverges.
+        If a path diverges, or the envelope is negative.
     """
     scheme, precision = sampling.scheme, sampling.precision
     place = [symbol.name for symbol in STATE_VARIABLES].index(variable)
@@ -54,6 +67,7 @@ def crossed(
         )
         for h in {h for _, h in grid}
     }
+    factors = _factors(envelope, grid)
     compile_march_survival(*pairs[grid[0][1]], new_panel(scene, sampling.seed, 0, precision))
 
     def run(job):
@@ -62,7 +76,8 @@ def crossed(
         before = np.tile(panel.data[interval.row, :count].astype(float), (2, 1))
         survival, sums = np.ones((2, count)), np.zeros((len(grid), 3))
         for k, (steps, h) in enumerate(grid):
-            march_survival(*pairs[h], panel, other, count, steps, interval, before, survival)
+            both = (*pairs[h], panel, other, count, steps, interval, before, survival)
+            march_survival(*both, factors[k])
             change = survival[0] - survival[1]
             sums[k] = np.sum(1 - survival[0]), change.sum(), np.sum(change**2)
         require_finite(before)
@@ -72,3 +87,14 @@ def crossed(
     for sums in parallel(run, sampling, 3 * sum(steps for steps, _ in grid)):
         total += sums
     return total
+
+
+def _factors(envelope, grid):
+    """Return the factors of the noise in the fine steps up to each output time."""
+    if envelope is None:
+        return [STATIONARY] * len(grid)
+    ends = np.cumsum([steps * h for steps, h in grid])
+    return [
+        scales(envelope, end - steps * h, h / 2, 2 * steps)
+        for end, (steps, h) in zip(ends, grid, strict=True)
+    ]

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import special, stats
 
 import nonsmooth as ns
+from nonsmooth.errors import SceneError
 from references import FALSE_ALARM, FRICTION, OBSTACLE
 
 HORIZONS = np.array([1.0, 3.0, 10.0])
@@ -88,3 +89,45 @@ def test_many_variables():
     scene = ns.Scene("elasto_plastic", "hamiltonian", potential="x**2/2")
     runs = [ns.state_crossing_probability(scene, "x", b, [5.0], tol=2e-2) for b in (0.5, 0.9)]
     assert 0 < runs[1]["probability"][0] < runs[0]["probability"][0] < 1
+
+
+def test_constant_envelope_is_another_intensity():
+    """S = 1/2 halves sigma: the solved probability is met; s = 1 changes no bit."""
+    exact = ns.state_crossing_probability(
+        ns.Scene("friction", ns.White(0.5)), "y", 0.4, HORIZONS, method="deterministic"
+    )["probability"]
+    run = ns.state_crossing_probability(
+        FRICTION, "y", 0.4, HORIZONS, paths=100_000, step=0.02, envelope="0.5"
+    )
+    assert np.max(off(run, exact)) < SURE
+    plain, same = (
+        ns.state_crossing_probability(
+            FRICTION, "y", 0.7, HORIZONS, paths=2000, step=0.1, envelope=envelope
+        )
+        for envelope in (None, "1")
+    )
+    assert plain.equals(same)
+
+
+@pytest.mark.parametrize("k", [0.5, 2.0])
+def test_growing_noise(k):
+    """Hardly damped y from 0 is Brownian motion on the clock int s^2, also with a one-sided level.
+
+    P(max y >= b) = erfc(b / sqrt(2 clock)), here s = t^k and the clock is t^(2k+1) / (2k+1); a
+    damping of 1e-6 does not matter.
+    """
+    scene = ns.Scene("elasto_plastic", damping=1e-6)
+    times = np.array([0.7, 1.0, 1.5])
+    run = ns.state_crossing_probability(
+        scene, "y", (-np.inf, 0.5), times, paths=100_000, step=0.02, envelope=f"t**{k}"
+    )
+    clock = times ** (2 * k + 1) / (2 * k + 1)
+    assert np.max(off(run, special.erfc(0.5 / np.sqrt(2 * clock)))) < SURE
+
+
+def test_envelope_is_sampled_only():
+    """The solvers take stationary noise."""
+    with pytest.raises(SceneError, match="no parameter 'envelope'"):
+        ns.state_crossing_probability(
+            FRICTION, "y", 1, HORIZONS, method="deterministic", envelope="t"
+        )

@@ -1,0 +1,28 @@
+"""The noise of steps under an envelope."""
+
+import numpy as np
+import pytest
+
+from nonsmooth.errors import ExpressionError, SceneError
+from nonsmooth.paths.absorption.envelope import scales
+
+
+def test_variance_of_each_step():
+    """The mean square of sin over a step, in closed form; Gauss points are exact to 1e-10 here."""
+    found = scales("abs(sin(t))", 1.0, 0.25, 6)
+    edges = 1 + 0.25 * np.arange(7)
+    exact = np.diff(edges / 2 - np.sin(2 * edges) / 4) / 0.25
+    assert np.allclose(found**2, exact, rtol=1e-9)
+
+
+def test_constant():
+    """A formula without t is a constant factor."""
+    assert np.allclose(scales("0.5", 0.0, 0.1, 3), 0.5)
+
+
+def test_refusals():
+    """What is negative, infinite or no formula of t."""
+    with pytest.raises(SceneError, match="envelope = '1 - t' is -0"):
+        scales("1 - t", 0.0, 0.1, 20)
+    with pytest.raises(ExpressionError):
+        scales("x", 0.0, 0.1, 20)
