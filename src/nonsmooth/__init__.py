@@ -17,7 +17,7 @@ What is studied: `Scene`, with the noises `White`, `Langevin`, `Hamiltonian`, `O
   the threshold appears farther away
 - `state_crossing_probability`: of a threshold by the displacement or the velocity themselves
 - `crossing_threshold`, `failure_time`: the threshold, or the time, at which that probability takes
-  a given value; `mean_time_to_failure`, `reliability_index`
+  a given value; `mean_time_to_failure`, `hazard_rate`, `reliability_index`
 - `crossing_sensitivity`: the derivative of a crossing probability by a parameter
 - `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`: the limit, in which
   the integral is a Brownian motion

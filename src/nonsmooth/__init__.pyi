@@ -10,6 +10,7 @@ from .errors import NonsmoothError as NonsmoothError
 from .estimate import Estimate as Estimate
 from .paths.simulation import simulate as simulate
 from .plotting.drawing import plot as plot
+from .reliability.hazard import hazard_rate as hazard_rate
 from .reliability.index import reliability_index as reliability_index
 from .reliability.mean_time import mean_time_to_failure as mean_time_to_failure
 from .reliability.quantiles import crossing_threshold as crossing_threshold

@@ -69,6 +69,16 @@ class SampledMean:
     tail: float = 0.05  # chosen: of the tolerance, part of the paths left at the end of the run
 
 
+@dataclass(frozen=True)
+class Hazard:
+    """Differences of W over the logarithm of the time."""
+
+    # chosen: of seven points, so that the error of the order 6 is far below that of W, 1e-7
+    spacing: float = 0.05
+    small: float = 0.1  # chosen: largest relative error of 1 - W; twice the error is stated for it
+
+
+HAZARD = Hazard()
 TRANSFORMED_MEAN = TransformedMean()
 SAMPLED_MEAN = SampledMean()
 SCALE = Scale()

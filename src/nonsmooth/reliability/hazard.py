@@ -1,0 +1,141 @@
+"""The hazard rate: the rate at which those cross that have not crossed yet."""
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.special import ndtri
+
+from nonsmooth.checks import require_increasing, require_positive
+from nonsmooth.crossing.counting import proportion
+from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.errors import answered
+from nonsmooth.reliability import tuning
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.thresholds import bounds
+
+
+def hazard_rate(
+    scene: Scene,
+    threshold: float | tuple[float, float],
+    horizons: ArrayLike,
+    p: float = 1.0,
+    method: str | None = None,
+    tol: float | None = None,
+    step: float | None = None,
+    paths: int | None = None,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+    order: int | None = None,
+) -> xr.Dataset:
+    """Hazard rate h(T) = W'(T) / (1 - W(T)) of the crossing of a threshold.
+
+    Parameters
+    ----------
+    scene : Scene
+    threshold : float or (float, float)
+        As for `crossing_probability`.
+    horizons : array_like, shape (k,)
+        Increasing T > 0, "1".
+    p, method, tol, step, paths, seed, threads, order
+        As for `crossing_probability`; `tol` is the error of W, not that of the hazard rate.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `horizon`, with the method among its attributes: `hazard_rate`, per unit of T, its
+        error `hazard_rate_error`, and `lower` and `upper`, between which it is. W is differentiated
+        over a tenth of T to either side, and the error has what the error of W becomes and what
+        differences of another width or order change. By Monte Carlo, paths are counted that cross
+        within this time; the error is the standard error and the biases, and the limits hold with
+        95 %.
+
+    Raises
+    ------
+    SceneError, ToleranceError
+        As `crossing_probability`.
+    """
+    horizons, p = require_increasing("horizons", horizons), require_positive("p", p)
+    pair = bounds(threshold)
+    # stencils of several horizons may share points but for rounding
+    points = horizons[:, None] * np.exp(tuning.HAZARD.spacing * np.arange(-3, 4))
+    points = np.array([[float(f"{point:.12g}") for point in row] for row in points])
+    times, where = np.unique(points, return_inverse=True)
+
+    def present(run):
+        at = {name: run[name].values[where.reshape(points.shape)] for name in run.data_vars}
+        if run.attrs["method"] == "monte_carlo":
+            found = _counted(at, points, int(run.attrs["paths"]))
+        else:
+            found = _differentiated(at, horizons)
+        names = ("hazard_rate", "hazard_rate_error", "lower", "upper")
+        return xr.Dataset(
+            {name: ("horizon", part) for name, part in zip(names, found, strict=True)},
+            coords={"horizon": horizons},
+            attrs=run.attrs,
+        )
+
+    return answered(
+        lambda: crossing_probability(
+            scene, pair, times, p, method, tol, step, paths, seed, None, threads, order
+        ),
+        present,
+        tol_given=tol is not None,
+    )
+
+
+def _differentiated(at, horizons):
+    """Differentiate log S at the middle of seven points, by differences of the orders 6 and 4."""
+    spacing = tuning.HAZARD.spacing
+    S = at.get("survival", 1 - at["probability"])
+    own = at.get("survival_error", at["probability_error"])
+    own = own / np.maximum(S, np.finfo(float).tiny)
+    log_S = np.log(np.maximum(S, np.finfo(float).tiny))
+    sixth = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
+    fourth = np.array([0, 1, -8, 0, 8, -1, 0]) / 12
+    rate, other = (-(log_S @ weights) / spacing / horizons for weights in (sixth, fourth))
+    error = np.abs(rate - other) + own @ np.abs(sixth) / spacing / horizons
+    # a relative error of S that is not small says nothing of its logarithm
+    error = np.where(own.max(axis=1) < tuning.HAZARD.small, 2 * error, np.inf)
+    rate = np.maximum(rate, 0.0)
+    return rate, error, np.maximum(rate - error, 0.0), rate + error
+
+
+def _counted(at, points, paths):
+    """Count the paths that cross between points, of those that have not crossed before."""
+    crossed = np.rint(at["probability"] * paths).astype(int)
+    rates, below, above = {}, {}, {}
+    for k in (1, 2, 3):
+        first, last = 3 - k, 3 + k
+        width = points[:, last] - points[:, first]
+        left = paths - crossed[:, first]
+        shares = proportion(crossed[:, last] - crossed[:, first], np.maximum(left, 1))
+        with np.errstate(divide="ignore"):  # where all have crossed
+            rates[k], below[k], above[k] = (
+                np.where(left > 0, -np.log1p(-share) / width, np.inf) for share in shares
+            )
+    known = np.isfinite(rates[3]) & np.isfinite(above[2])
+    if not known.all():
+        rates, below, above = (
+            {k: np.where(known, part, 0.0) for k, part in parts.items()}
+            for parts in (rates, below, above)
+        )
+    # the mean over a window is off like the square of its width
+    curved = np.abs(rates[3] - rates[1]) / 2
+    width = points[:, 5] - points[:, 1]
+    left = np.maximum(1 - at["probability"][:, [1, 5]], 1 / paths)
+    shift = at["step_bias"][:, [1, 5]] / left
+    bias = np.abs(shift[:, 1] - shift[:, 0]) / width
+    spread = np.hypot(*(at["step_bias_error"][:, [1, 5]] / left).T) / width
+    two_sided = ndtri(0.975)
+    rate, low, high = rates[2], below[2], above[2]
+    own = (high - low) / 2 / two_sided
+    error = curved + bias + np.hypot(own, spread)
+    more = curved + bias
+    lower = rate - more - np.hypot(rate - low, two_sided * spread)
+    upper = rate + more + np.hypot(high - rate, two_sided * spread)
+    return (
+        rate,
+        np.where(known, error, np.inf),
+        np.where(known, np.maximum(lower, 0.0), 0.0),
+        np.where(known, upper, np.inf),
+    )
