@@ -30,6 +30,8 @@ from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.curves import curves
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
+from nonsmooth.crossing.state.problem import IntegralCrossing
+from nonsmooth.crossing.state.sampled import sampled_state_crossing
 from nonsmooth.errors import (
     SceneError,
     ToleranceError,
@@ -61,6 +63,7 @@ def crossing_probability(
     precision: str | None = None,
     threads: int | None = None,
     order: int | None = None,
+    envelope: str | None = None,
 ) -> xr.Dataset:
     """Probability that int_0^t g leaves an interval before p T.
 
@@ -109,6 +112,9 @@ def crossing_probability(
         All cores unless given.
     order : {1, 2, 3}, optional
         Of ``"corrected"``; 1 unless given.
+    envelope : str, optional
+        s >= 0, a formula in ``t``, the time up to p T: non-stationary noise s(t) sigma dW;
+        ``"monte_carlo"`` only. Several thresholds are then sampled one after the other.
 
     Returns
     -------
@@ -147,6 +153,7 @@ def crossing_probability(
     method = None if method is None else require_choice("method", method, METHODS)
     seed, threads = require_seed(seed), require_threads(threads)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
+    options["envelope"] = envelope
     given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
     attempts = (
         _attempts(scene, horizons, p, given, len(thresholds)) if method is None else [(method, {})]
@@ -204,7 +211,7 @@ def _attempts(scene, horizons, p, given, thresholds):
     if "order" in given:
         return [("corrected", {})]
     default = default_tolerance(scene)
-    if default is None or {"step", "paths", "precision"} & given.keys():
+    if default is None or {"step", "paths", "precision", "envelope"} & given.keys():
         return [("monte_carlo", {})]
     tol = given.get("tol", default)
     attempts = [("deterministic", {})]
@@ -273,6 +280,33 @@ def _require_centred(scene, gamma2, found):
         )
 
 
+def _sampled(
+    scene,
+    thresholds,
+    horizons,
+    p,
+    seed,
+    threads,
+    tol=MONTE_CARLO.tolerance,
+    step=None,
+    paths=None,
+    precision="float32",
+    most=MONTE_CARLO.most_steps,
+    envelope=None,
+):
+    """Count paths, of stationary noise or under an envelope."""
+    options = seed, threads, tol, step, paths, precision
+    if envelope is None:
+        return sampled_crossing(scene, thresholds, horizons, p, *options, most)
+    each = [
+        sampled_state_crossing(IntegralCrossing(scene, *levels), p * horizons, *options, envelope)
+        for levels in np.sqrt(p) * thresholds
+    ]
+    values = {name: np.array([own[name] for own, _ in each]) for name in each[0][0]}
+    runs = [attributes for _, attributes in each]
+    return values, {"step": min(r["step"] for r in runs), "paths": min(r["paths"] for r in runs)}
+
+
 def _deterministic(scene, thresholds, horizons, p, seed, threads, tol=None):
     times, scale = p * horizons, np.sqrt(p)
     return _each(
@@ -318,13 +352,14 @@ _OPTIONS: dict[str, Callable] = {
     "paths": lambda paths: require_count("paths", paths),
     "precision": lambda precision: require_choice("precision", precision, PRECISIONS),
     "order": lambda order: require_count("order", order, 3),
+    "envelope": lambda envelope: envelope,  # is read where its values are wanted
 }
 
 # Each takes (scene, thresholds, horizons, p, seed, threads), the thresholds as pairs, shape (m, 2),
 # and those of the other parameters of `crossing_probability` that it has. It returns a dict of the
 # variables over thresholds and horizons and a dict of attributes.
 METHODS: dict[str, Callable] = {
-    "monte_carlo": sampled_crossing,
+    "monte_carlo": _sampled,
     "deterministic": _deterministic,
     "asymptotic": _asymptotic,
     "corrected": _corrected,

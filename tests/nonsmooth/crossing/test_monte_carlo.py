@@ -74,3 +74,27 @@ def test_what_hardly_happens_takes_few_paths():
         run = ns.crossing_probability(FRICTION, 3.0, HORIZONS, p=10, method="monte_carlo", tol=tol)
         assert np.max(np.abs(run["probability"] - exact)) < tol
         assert run.attrs["paths"] <= most
+
+
+def test_envelope():
+    """S = 1/2 is half the intensity of the noise, whose probability is solved.
+
+    All errors of the sample, biases in them, and five of them: a false alarm in a million.
+    """
+    exact = ns.crossing_probability(
+        ns.Scene("friction", ns.White(0.5)), [0.1, 0.2], [4.0], method="deterministic", tol=1e-4
+    )
+    run = ns.crossing_probability(FRICTION, [0.1, 0.2], [4.0], envelope="0.5", seed=2)
+    assert run.attrs["method"] == "monte_carlo"
+    gap = np.abs(run["probability"] - exact["probability"])
+    assert np.all(gap <= 5 * run["probability_error"] + exact["probability_error"])
+
+
+def test_envelope_that_ends():
+    """Where the noise has stopped dry friction comes to rest, and hardly any path crosses."""
+    run = ns.crossing_probability(
+        FRICTION, 0.5, [2.0, 6.0, 12.0], envelope="max(0, 1 - t/6)", seed=2
+    )
+    W = run["probability"].values
+    assert W[0] < W[1]
+    assert W[2] - W[1] < 1e-2

@@ -35,6 +35,11 @@ class StateCrossing:
         return next(s for s in STATE_VARIABLES if s.name == self.scene.observable)
 
     @property
+    def followed(self) -> str | None:
+        """What paths are watched for: the variable."""
+        return str(self.scene.observable)
+
+    @property
     def start(self) -> float:
         """Value of the variable at time 0."""
         return self.scene.start.get(self.scene.observable, 0.0)
@@ -43,6 +48,26 @@ class StateCrossing:
     def driven(self) -> bool:
         """Whether noise acts on the variable itself, so that its paths are rough."""
         return self.variable == self.scene.noise.driven
+
+
+@dataclass(frozen=True)
+class IntegralCrossing(StateCrossing):
+    """First passage of int g of a scene, from 0, where it is sampled like that of a variable."""
+
+    @property
+    def followed(self) -> str | None:
+        """None: the integral."""
+        return None
+
+    @property
+    def start(self) -> float:
+        """Value of the integral at time 0."""
+        return 0.0
+
+    @property
+    def driven(self) -> bool:
+        """Whether noise acts on the integral itself; it does not."""
+        return False
 
 
 def state_crossing(scene: Scene, variable: str, threshold: ArrayLike) -> StateCrossing:

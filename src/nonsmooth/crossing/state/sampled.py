@@ -99,7 +99,7 @@ def _coarsest(asked, times):
 def _sample(asked, times, sampling, envelope):
     """Return the sum of the probabilities to have left, and values and attributes."""
     levels = asked.lower, asked.upper
-    sums = crossed(asked.scene, asked.scene.observable, levels, times, sampling, envelope)
+    sums = crossed(asked.scene, asked.followed, levels, times, sampling, envelope)
     paths = sampling.paths
     counts, change, square = np.clip(sums[:, 0], 0.0, paths), sums[:, 1] / paths, sums[:, 2] / paths
     # what doubling the step changes is (2^q - 1) times the bias; if no path shows a change, the

@@ -11,7 +11,7 @@ from nonsmooth.paths.absorption.loop import (
     march_survival,
 )
 from nonsmooth.paths.ensembles import require_finite
-from nonsmooth.paths.kernels.panel import STATE, new_panel
+from nonsmooth.paths.kernels.panel import DELTA, STATE, new_panel
 from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
@@ -22,7 +22,7 @@ from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 def crossed(
     scene: Scene,
-    variable: str,
+    variable: str | None,
     levels: tuple[float, float],
     times: ArrayLike,
     sampling: Sampling,
@@ -33,8 +33,9 @@ def crossed(
     Parameters
     ----------
     scene : Scene
-    variable : str
-        The variable of the state that leaves it.
+    variable : str or None
+        The variable of the state that leaves it; None stands for int g, which is then added up in
+        the precision of the steps.
     levels : (float, float)
         Lower and upper end, between which it starts.
     times : array_like, shape (t,)
@@ -56,9 +57,7 @@ def crossed(
         If a path diverges, or the envelope is negative.
     """
     scheme, precision = sampling.scheme, sampling.precision
-    place = [symbol.name for symbol in STATE_VARIABLES].index(variable)
-    driven = variable == scene.noise.driven.name
-    interval = Interval(STATE[place], *levels, scene.noise.sigma**2 if driven else 0.0)
+    interval = _interval(scene, variable, levels)
     grid = equal_steps(times, 2 * sampling.step)
     pairs = {
         h: (
@@ -98,3 +97,11 @@ def _factors(envelope, grid):
         scales(envelope, end - steps * h, h / 2, 2 * steps)
         for end, (steps, h) in zip(ends, grid, strict=True)
     ]
+
+
+def _interval(scene, variable, levels):
+    if variable is None:
+        return Interval(DELTA, *levels, 0.0)
+    place = [symbol.name for symbol in STATE_VARIABLES].index(variable)
+    driven = variable == scene.noise.driven.name
+    return Interval(STATE[place], *levels, scene.noise.sigma**2 if driven else 0.0)
