@@ -7,8 +7,6 @@ from pathlib import Path
 from reproduction.errors import ConfigError
 from studies.study import Study
 
-FOLDER = Path("studies")
-
 
 class Studies:
     """Finds studies by name; a file is read when its study is needed.
@@ -17,11 +15,13 @@ class Studies:
     ----------
     own : dict
         Studies in the configuration, by name.
+    folder : str
+        Where the files of others are.
     """
 
-    def __init__(self, own: dict) -> None:
-        self.own = own
-        self.names = sorted(own or (path.stem for path in FOLDER.glob("*.yaml")))
+    def __init__(self, own: dict, folder: str) -> None:
+        self.own, self.folder = own, Path(folder)
+        self.names = sorted(own or (path.stem for path in self.folder.glob("*.yaml")))
         self.get = cache(self._get)
 
     def _get(self, name):
@@ -36,10 +36,9 @@ class Studies:
 
         return found
 
-    @staticmethod
-    def file(name: str) -> Path:
+    def file(self, name: str) -> Path:
         """Name the file of a study."""
-        return FOLDER / f"{name}.yaml"
+        return self.folder / f"{name}.yaml"
 
     def wanted(self, targets: Iterable[str]) -> list[str]:
         """Return the names of the studies that snakemake's arguments ask for."""

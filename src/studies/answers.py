@@ -14,7 +14,7 @@ from nonsmooth.errors import AccuracyWarning, ToleranceError
 from nonsmooth.estimate import Estimate
 from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
-from studies.questions import PLAIN, QUESTIONS, VARIABLES
+from studies.questions import INTEGRAL, PLAIN, QUESTIONS, VARIABLES
 from studies.scenes import observed, scene_of
 from studies.units import Powers, Units
 
@@ -54,8 +54,15 @@ def answer(
 
 
 def meanings(question: Mapping[str, Any], scene: Mapping[str, Any]) -> dict[str, Powers]:
-    """Return what the observable and the variable of a question are, in base quantities."""
-    return {"g": observed(scene), "variable": VARIABLES.get(question.get("variable", ""), PLAIN)}
+    """Return what the observable, variable and parameter of a question are in base quantities."""
+    g = observed(scene)
+    # the other parameters are dimensionless, also those of a structure
+    by_threshold = question.get("parameter") == "threshold"
+    return {
+        "g": g,
+        "variable": VARIABLES.get(question.get("variable", ""), PLAIN),
+        "parameter": resolved(INTEGRAL, {"g": g}) if by_threshold else PLAIN,
+    }
 
 
 def arguments(

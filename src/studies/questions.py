@@ -1,8 +1,9 @@
 """What a study can ask: for each question a function of the library, and what its numbers are.
 
 How to add one: an entry of `QUESTIONS`. The arguments are those of the function that a study may
-give, each with what it is: powers of the base quantities, with ``"g"`` for the observable and
-``"variable"`` for the variable of the state that the question names; `PLAIN` for numbers without
+give, each with what it is: powers of the base quantities, with ``"g"`` for the observable,
+``"variable"`` for the variable of the state and ``"parameter"`` for the parameter that the question
+names; `PLAIN` for numbers without
 units. The values are the variables of the answer; those that are not named are
 plain numbers. Errors have the units of what they belong to.
 """
@@ -13,7 +14,10 @@ from dataclasses import dataclass, field
 from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
 from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.crossing.state.crossing import state_crossing_probability
+from nonsmooth.reliability.mean_time import mean_time_to_failure
 from nonsmooth.reliability.quantiles import crossing_threshold, failure_time
+from nonsmooth.sensitivity.crossing import crossing_sensitivity
+from nonsmooth.sensitivity.gamma2 import asymptotic_variance_sensitivity
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.invariant_density import invariant_density
 from nonsmooth.statistics.mean import mean
@@ -172,6 +176,39 @@ QUESTIONS: dict[str, Question] = {
         },
         {"threshold": INTEGRAL, "probability": PLAIN} | _CROSSING,
         required=("threshold",),
+    ),
+    "mean_time_to_failure": Question(
+        "Mean time to failure",
+        mean_time_to_failure,
+        {"time": (TIME, "mean time at which the integral of g leaves the interval")},
+        {"threshold": INTEGRAL}
+        | {name: kind for name, kind in _CROSSING.items() if name != "order"},
+        required=("threshold",),
+    ),
+    "asymptotic_variance_sensitivity": Question(
+        "Derivative of the asymptotic variance",
+        asymptotic_variance_sensitivity,
+        {"derivative": ({"g": 2, "time": 1}, "derivative of gamma^2 by the parameter")},
+        {"parameter": PLAIN, "tol": PLAIN},
+        required=("parameter",),
+        sampled=False,
+    ),
+    "crossing_sensitivity": Question(
+        "Derivative of the probability of crossing",
+        crossing_sensitivity,
+        {
+            "derivative": ({"parameter": -1}, "derivative of the probability by the parameter"),
+            "horizon": (TIME, "time"),
+        },
+        {
+            "threshold": INTEGRAL,
+            "horizons": TIME,
+            "parameter": PLAIN,
+            "p": PLAIN,
+            "method": PLAIN,
+            "tol": PLAIN,
+        },
+        required=("threshold", "horizons", "parameter"),
     ),
     "state_crossing_probability": Question(
         "Probability that the state crosses",

@@ -103,3 +103,37 @@ def test_a_batch_computes_what_is_new_alone(tmp_path, monkeypatch):
     source.write_text("2")
     batch()
     assert len(computed) == 3
+
+
+@pytest.mark.parametrize(
+    ("question", "name", "unit"),
+    [
+        ({"ask": "mean_time_to_failure", "threshold": "2 m"}, "time", "s"),
+        ({"ask": "asymptotic_variance_sensitivity", "parameter": "n"}, "derivative", "mm2 s-1"),
+        ({"ask": "failure_time", "threshold": "2 m", "method": "asymptotic"}, "time", "s"),
+        (
+            {"ask": "state_crossing_probability", "variable": "y", "threshold": "2 m/s"}
+            | {"horizons": ["2 s"]},
+            "probability",
+            "1",
+        ),
+    ],
+)  # fmt: skip
+def test_units_of_answers(question, name, unit):
+    """Each answer has those of what it is; and it is an artifact as it stands."""
+    found = answer(STRUCTURE, question, {"length": "mm"}, 0)
+    assert found[name].attrs["units"] == unit
+    assert found[f"{name}_error"].attrs["units"] == unit
+    assert np.all(np.isfinite(found[name]))
+
+
+@pytest.mark.slow
+def test_the_derivative_by_the_threshold_is_that_of_the_answers():
+    """In the user's units: a difference of two probabilities over a difference of millimetres."""
+    crossing = {"ask": "crossing_probability", "threshold": ["1995 mm", "2005 mm"]}
+    shared = {"horizons": ["9 s"]}
+    both = answer(STRUCTURE, crossing | shared, {"length": "mm"}, 0)["probability"].values[:, 0]
+    slope = {"ask": "crossing_sensitivity", "threshold": "2 m", "parameter": "threshold"}
+    found = answer(STRUCTURE, slope | shared, {"length": "mm"}, 0)
+    # the third derivative adds (5/2000)^2 relative
+    assert float(found["derivative"][0]) == pytest.approx((both[1] - both[0]) / 10, rel=1e-3)

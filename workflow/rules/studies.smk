@@ -1,7 +1,7 @@
 # Studies: tables of scenes and questions of users, from a file to a report. They are not part of the
 # paper: `snakemake --cores 2 study_NAME`.
 
-STUDIES = Studies(config.get("studies", {}))
+STUDIES = Studies(config.get("studies", {}), own("studies"))
 
 try:
     # the targets; snakemake itself tells them only after this file
@@ -44,7 +44,7 @@ rule study_report:
             for question in STUDIES.get(wildcards.study).questions
             for name in STUDIES.get(wildcards.study).artifacts(question)
         ],
-        templates=expand("workflow/templates/study.{format}", format=["html", "typ"]),
+        templates=[own("workflow/templates/study.html"), own("workflow/templates/study.typ")],
     output:
         multiext("<results>/studies/{study}/report", ".html", ".pdf"),
     params:
