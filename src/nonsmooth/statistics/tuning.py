@@ -156,7 +156,11 @@ class Variance:
     # chosen: absolute, of v(tau)/tau, for one and two state variables
     tolerance: tuple[float, ...] = (1e-9, 1e-5)
     # chosen: polynomial degrees of the eigenfunctions, until two agree
-    degrees: tuple[int, ...] = (8, 12, 16, 20, 24)
+    degrees: tuple[int, ...] = (4, 6, 8, 12, 16, 20, 24)
+    # chosen: tolerances from this on are tried with the first of these degrees, others without the
+    # first so many, which would not be enough
+    loose: float = 1e-6
+    few: int = 2
     # fitted: benchmarks/requests.py; this many steps of all paths together take less time than
     # grids for two variables
     few_steps: float = 5e7

@@ -144,7 +144,8 @@ def _of_velocity(scene, times, tol):
     the solution of lower degree, and far above that of the other, because convergence in the degree
     is fast. Rounding is added.
     """
-    degrees = tuning.VARIANCE.degrees
+    settings = tuning.VARIANCE
+    degrees = settings.degrees[0 if tol >= settings.loose else settings.few :]
     allowed = np.array([np.full_like(times, np.inf), tol * np.where(times > 0, times, 1.0)])
 
     def error(solutions):

@@ -5,6 +5,7 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
+from nonsmooth.line import eigenfunctions
 from references import FRICTION
 
 
@@ -17,6 +18,28 @@ def test_sampled_variance_meets_its_tolerance():
     assert np.all(found["v_error"] <= 3e-3 * times)
     with pytest.raises(ToleranceError, match=r"v\(tau\)/tau = .* use tol >="):
         ns.variance(FRICTION, times, 1e-9, "monte_carlo")
+
+
+@pytest.mark.parametrize("g", ["y", "y + 0.4*abs(y)", "tanh(2*y)"])
+def test_a_loose_tolerance_takes_coarser_elements(monkeypatch, g):
+    """Asking for less takes no higher degree, and the error holds."""
+    degrees = []
+    solve = eigenfunctions.moments_with_rounding
+
+    def counted(scene, times, degree):
+        degrees.append(degree)
+        return solve(scene, times, degree)
+
+    monkeypatch.setattr(eigenfunctions, "moments_with_rounding", counted)
+    scene, times = ns.Scene("friction", n=100, observable=g), np.geomspace(0.1, 100, 9)
+    exact = ns.variance(scene, times, 1e-8)
+    largest = [degrees[-1]]
+    for tol in (1e-4, 1e-2):
+        found = ns.variance(scene, times, tol)
+        largest.append(degrees[-1])
+        assert np.all(np.abs(found["v"] - exact["v"]) <= found["v_error"] + exact["v_error"])
+        assert np.all(found["v_error"] <= tol * times)
+    assert largest[0] > largest[1] >= largest[2]
 
 
 def test_rare_yielding_is_not_taken_for_rest():
