@@ -107,8 +107,8 @@ def _known(drift, scene):
 
 
 def _rounded(number):
-    short = sympy.Float(number, 4)
-    return sympy.Integer(short) if short == int(short) else short
+    short = float(f"{float(number):.4g}")
+    return sympy.Integer(short) if short.is_integer() else sympy.Float(short, 4)
 
 
 def _observable(scene):
