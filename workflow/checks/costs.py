@@ -304,6 +304,7 @@ def _sweep(topic):
         outputs=["outputs"],
     )
     seconds = 0.0
+    sizes["sweep", "scenes", shortest, "long_step"] = 1 / steps[shortest]
     for (name, scene), p in product(zip(steps, scenes, strict=True), topic["p"]):
         step = topic["step"] if p <= topic["measured"] else steps[name]
         halved = min(p, topic["measured"]) * topic["horizon"]
