@@ -18,6 +18,7 @@ _TITLES = {
     "standard_error": "standard error",
     "step_bias": "bias of the time step",
     "step_bias_error": "standard error of the bias",
+    "effective_sample_size": "effective number of the paths that cross",
 }
 
 

@@ -29,6 +29,7 @@ from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.curves import curves
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
+from nonsmooth.crossing.importance_sampling import importance_sampled_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
 from nonsmooth.crossing.state.problem import IntegralCrossing
 from nonsmooth.crossing.state.sampled import sampled_state_crossing
@@ -79,7 +80,7 @@ def crossing_probability(
         Increasing T > 0, "1".
     p : float
         Scale of the functional central limit theorem, > 0.
-    method : {"monte_carlo", "deterministic", "asymptotic", "corrected"}, optional
+    method : str, optional
         Chosen by the scene, `tol` and the other parameters unless given.
 
         - ``"deterministic"`` solves an equation for the first passage. It is for the state y with
@@ -90,6 +91,9 @@ def crossing_probability(
           meets it.
         - ``"monte_carlo"`` counts paths. It is chosen for all other scenes, and where the
           deterministic method misses a tolerance that is loose enough for counting.
+        - ``"importance_sampling"`` leads paths to the threshold and weights them, for rare
+          crossings of every scene in which int g spreads like a Brownian motion. It is chosen where
+          there is no deterministic method and `tol` is out of reach of counting.
         - ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity, eq. (33) of the paper.
           It does not depend on p; its error does.
         - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
@@ -97,14 +101,15 @@ def crossing_probability(
           2, and 3 if g is odd; elsewhere it needs odd g and has the order 1.
     tol : float, optional
         Absolute error wanted. Unless given, it is 1e-2 for ``"monte_carlo"``, and 1e-7 for
-        ``"deterministic"`` or 1e-4 with two variables. By Monte Carlo the number of paths and the
+        ``"deterministic"`` or 1e-4 with two variables; for ``"importance_sampling"`` a tenth of
+        each probability. By Monte Carlo and importance sampling the number of paths and the
         time step follow from it, unless they are given: three standard errors are at most three
         quarters of `tol`, and the bias of the step is at most a quarter. Without it
         ``"corrected"`` returns whatever error it has. ``"asymptotic"`` does not take it.
     step : float, optional
-        Longest time step, "1"; ``"monte_carlo"`` only.
+        Longest time step, "1"; ``"monte_carlo"`` and ``"importance_sampling"`` only.
     paths : int, optional
-        Number of paths; ``"monte_carlo"`` only.
+        Number of paths; for ``"importance_sampling"`` of each side. For these two methods only.
     seed : int or tuple
     precision : {"float32", "float64"}, optional
         ``"monte_carlo"`` only; ``"float32"`` unless given.
@@ -136,6 +141,9 @@ def crossing_probability(
           and `upper` are 95 % confidence limits that account for both. The `standard_error` alone;
           and the bias, as measured by halving the step, `step_bias` with its standard error
           `step_bias_error`. The bias is not subtracted from the probability.
+        - ``"importance_sampling"``: the same, and `effective_sample_size`, the number of equally
+          weighted paths that would tell as much. Where it is 0, nothing is known but that the
+          probability is not above that of the next horizon.
 
     Raises
     ------
@@ -211,8 +219,13 @@ def _attempts(scene, horizons, p, given, thresholds):
     if "order" in given:
         return [("corrected", {})]
     default = default_tolerance(scene)
-    if default is None or {"step", "paths", "precision", "envelope"} & given.keys():
-        return [("monte_carlo", {})]
+    of_counting = {"step", "paths", "precision", "envelope"} & given.keys()
+    if default is None or of_counting:
+        counted = [("monte_carlo", {})]
+        if "tol" not in given or of_counting or scene.primitive_variable is not None:
+            return counted
+        _, least = least_steps(scene, p * horizons[-1], given["tol"])
+        return [("importance_sampling", {})] if least > choice.counted_steps else counted
     tol = given.get("tol", default)
     attempts = [("deterministic", {})]
     if tol >= choice.sampled_tolerance or "tol" not in given:
@@ -360,6 +373,7 @@ _OPTIONS: dict[str, Callable] = {
 # variables over thresholds and horizons and a dict of attributes.
 METHODS: dict[str, Callable] = {
     "monte_carlo": _sampled,
+    "importance_sampling": importance_sampled_crossing,
     "deterministic": _deterministic,
     "asymptotic": _asymptotic,
     "corrected": _corrected,

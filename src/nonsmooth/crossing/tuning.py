@@ -23,6 +23,9 @@ class MethodChoice:
     # tolerance and steps up to which Monte Carlo replaces a solver that fails; chosen: minutes
     sampled_tolerance: float = 1e-4
     sampled_steps: float = 1e11
+    # least number of steps of counting from which paths are led to the threshold instead; chosen:
+    # about a minute of one core, several times what importance sampling takes
+    counted_steps: float = 1e10
 
 
 @dataclass(frozen=True)
@@ -118,6 +121,35 @@ class Counting:
     attempts: int = 3
 
 
+@dataclass(frozen=True)
+class Weights:
+    """Importance sampling: how guides are fitted, and which weighted sums are trusted."""
+
+    relative: float = 0.1  # chosen: error wanted over the probability, where no tolerance is given
+    fitted: int = 4000  # chosen: paths of a fit; a guide has up to fifty coefficients
+    first: int = 4000  # chosen: least number of paths of a sample
+    # chosen: numbers of equal parts of the way to a level by which guides to it are fitted
+    ladder: tuple[int, ...] = (1, 2, 4, 8, 16)
+    # chosen: fits at the level itself after the first one there, at most, and by how much the
+    # effective number of paths must grow for another one
+    repeated: int = 3
+    improved: float = 1.2
+    # chosen: least effective number of paths of a fit, a few for each coefficient
+    led: float = 50.0
+    # chosen: most paths that measure the bias of the step, over those of the estimate
+    most_halved: int = 16
+    # chosen: least effective number of paths of an estimate; the largest weight is then at most a
+    # tenth of the sum, and the standard error known to ten per cent or so
+    least: float = 100.0
+    # chosen: a guide also serves earlier horizons with at most so many times its relative error
+    worse: float = 2.0
+    # chosen: probabilities that are not told from 0 if no tolerance is given
+    negligible: float = 1e-14
+    # chosen: probability of one side over the other, both in the Brownian limit, below which no
+    # paths are led there; those that come by chance are counted
+    other_side: float = 1e-6
+
+
 METHOD_CHOICE = MethodChoice()
 CENTRED = Centred()
 LIMIT_ERROR = LimitError()
@@ -126,3 +158,4 @@ RANDOM_CLOCK = RandomClock()
 ORDERS = Orders()
 CORRECTED_ERROR = CorrectedError()
 COUNTING = Counting()
+WEIGHTS = Weights()

@@ -45,7 +45,9 @@ _NO_SUMS, _NO_CHANGES = np.empty((0, 5, 5)), np.empty((0, 4, 4))
 
 
 @intrinsic
-def _pointer(typing, address):
+def pointer(typing, address):
+    """Return an array's `.ctypes` as a pointer, which has no shape yet."""
+
     def generate(context, builder, signature, arguments):
         return context.cast(builder, arguments[0], address, signature.return_type)
 
@@ -78,9 +80,9 @@ def _choose_kick(s, data, normal, lanes):
 def of_known_shape(panel):
     """Return the panel's three arrays; rows of a known length cannot overlap, so they vectorise."""
     return (
-        numba.carray(_pointer(panel.words.ctypes), (4, WIDTH)),
-        numba.carray(_pointer(panel.data.ctypes), (ROWS, WIDTH)),
-        numba.carray(_pointer(panel.total.ctypes), (3, WIDTH)),
+        numba.carray(pointer(panel.words.ctypes), (4, WIDTH)),
+        numba.carray(pointer(panel.data.ctypes), (ROWS, WIDTH)),
+        numba.carray(pointer(panel.total.ctypes), (3, WIDTH)),
     )
 
 

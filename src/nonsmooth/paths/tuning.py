@@ -127,3 +127,51 @@ class Interruption:
 
 
 INTERRUPTION = Interruption()
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """The polynomials by which the noise is shifted towards a level, see `tilted.tilt`."""
+
+    # chosen: largest degree for one to four state variables; the next ones explain less than one
+    # per cent more of the variance of int g in the nine scenes of the paper
+    degrees: tuple[int, int, int, int] = (7, 5, 3, 3)
+    # chosen: of the polynomials that multiply higher powers of q
+    higher_degree: int = 5
+    # fitted: time added to what is left, because noise has no time to act just before the end
+    pause: float = 0.3
+    # fitted: largest q, in units of 1/gamma, and in units of that of a straight way to the level;
+    # larger ones give single paths large weights
+    least_cap: float = 0.67
+    share: float = 0.5
+
+
+TILT = Tilt()
+
+
+@dataclass(frozen=True)
+class PoissonFit:
+    """The fit of the Poisson solution, see `tilted.poisson`."""
+
+    stretch: float = 10.0  # chosen: in units of the larger of 1 and 1/C_b, several relaxation times
+    stretches: int = 4  # chosen: of a thousand paths; their noise is below the polynomial's error
+    margin: float = 1.3  # chosen: reach of the polynomials over the largest states seen
+    singular: float = 1e-8  # chosen: singular values that count as 0, near single precision
+    # chosen: part of the variance of int g that the martingale must explain
+    least: float = 0.1
+
+
+POISSON_FIT = PoissonFit()
+
+
+@dataclass(frozen=True)
+class CrossEntropy:
+    """The fit of a guide to paths that have reached a level, see `tilted.cross_entropy`."""
+
+    records: int = 250  # chosen: most steps of a path at which the fit looks
+    # chosen: weight of the old guide, where few paths have come by, over that of the new one
+    defence: float = 0.02
+    ridge: float = 1.0  # derived: a priori a coefficient explains half a unit of relative entropy
+
+
+CROSS_ENTROPY = CrossEntropy()

@@ -1,0 +1,134 @@
+"""By how much the noise of a path is shifted, given its state and its distance to a level.
+
+Let W(d, s) be the probability that the Brownian limit covers a distance d within the time s. To
+first order, the probability to reach the level b within s from the state z is W(b + kappa - D - u,
+s), D = int g and u(z) the Poisson solution. Doob's transform with it adds theta dt to the noise,
+
+    theta = sigma d_v u(z) q,    q = -d_d log W,
+
+v being the variable that noise enters. A guide replaces sigma d_v u by polynomials P in the state,
+
+    theta = q (P_1 + q P_2 + q^2 P_3),
+
+which also hold for large deviations, where the response to a large q is not linear.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonsmooth.paths import tuning
+from nonsmooth.paths.kernels.panel import STATE
+from nonsmooth.paths.tilted.polynomials import Polynomials
+
+
+class Tilt(NamedTuple):
+    """What kernels know of a guide towards one level.
+
+    `parent` and `variable` make each monomial from another one; `width` are the inverse reaches of
+    the state variables; `coefficient` belongs to the monomial `term` of the polynomial `output`
+    (0 for u, 1 to 3 for P). `side` is 1 for the upper level and -1 for the lower, `target` the
+    level times `side` plus kappa, `mean` that of g, `gamma` the root of gamma^2, `end` the time
+    by which the level is to be reached with a while added, and `cap` the largest q.
+    """
+
+    parent: np.ndarray
+    variable: np.ndarray
+    width: np.ndarray
+    output: np.ndarray
+    term: np.ndarray
+    coefficient: np.ndarray
+    side: Any
+    target: float
+    mean: float
+    gamma: float
+    end: float
+    cap: Any
+
+
+@dataclass(frozen=True)
+class Aim:
+    """The level that paths are to reach first, and by when.
+
+    Attributes
+    ----------
+    side : int
+        1 for the upper level, -1 for the lower one.
+    levels : (float, float)
+        Lower and upper level of int g, at which paths end.
+    time : float
+    """
+
+    side: int
+    levels: tuple[float, float]
+    time: float
+
+    @property
+    def distance(self) -> float:
+        """Distance of the level from 0."""
+        return abs(self.levels[(1 + self.side) // 2])
+
+    def nearer(self, part: float) -> "Aim":
+        """Return the same aim at a part of the distance."""
+        lower, upper = self.levels
+        own = (lower, part * upper) if self.side > 0 else (part * lower, upper)
+        return replace(self, levels=own)
+
+
+@dataclass(frozen=True)
+class Guide:
+    """Polynomials of the state that shift the noise.
+
+    Attributes
+    ----------
+    basis : Polynomials
+    coefficients : numpy.ndarray, shape (4, terms)
+        Of u and of P_1, P_2, P_3.
+    mean, gamma : float
+        The stationary mean of g and the root of gamma^2.
+    kappa : float
+        By how much the level seems to be farther away.
+    """
+
+    basis: Polynomials
+    coefficients: np.ndarray
+    mean: float
+    gamma: float
+    kappa: float = 0.0
+
+    def towards(self, aim: Aim, precision: str = "float32") -> Tilt:
+        """Return what kernels need to shift the noise towards a level."""
+        number = np.dtype(precision).type
+        parent, factor = self.basis.origin
+        rows = np.array(self.basis.rows) - STATE[0]
+        width = np.ones(len(STATE), number)
+        width[rows] = 1 / self.basis.reach
+        output, term = np.nonzero(self.coefficients)
+        return Tilt(
+            parent,
+            rows[factor],
+            width,
+            output,
+            term,
+            self.coefficients[output, term].astype(number),
+            number(aim.side),
+            float(aim.distance + self.kappa),
+            float(self.mean),
+            float(self.gamma),
+            float(aim.time + tuning.TILT.pause),
+            number(self.largest_rate(aim)),
+        )
+
+    def rate(self, aim: Aim, left: float, covered: np.ndarray) -> np.ndarray:
+        """Return q with its sign at the time `left` before the end; `covered` is D + u."""
+        scale = 1 / (self.gamma * np.sqrt(left + tuning.TILT.pause))
+        target = aim.distance + self.kappa - aim.side * self.mean * left
+        away = np.maximum(target - aim.side * covered, 0.0) * scale
+        hazard = (1 - 1 / np.pi) * away + np.sqrt((away / np.pi) ** 2 + 2 / np.pi)
+        return aim.side * np.minimum(scale * hazard, self.largest_rate(aim))
+
+    def largest_rate(self, aim: Aim) -> float:
+        """Return the largest q, beyond which noise has no time to act."""
+        typical = aim.distance / (self.gamma * aim.time)
+        return max(tuning.TILT.least_cap, tuning.TILT.share * typical) / self.gamma
