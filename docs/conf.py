@@ -83,6 +83,7 @@ sphinx_gallery_conf = {
             "yielding_oscillator.py",
             "obstacle_density.py",
             "friction_crossing.py",
+            "rare_crossing.py",
             "corrected_formula.py",
             "*",
         ]

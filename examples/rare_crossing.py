@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import nonsmooth as ns
 
 scene = ns.Scene("friction", noise="langevin")
-thresholds = [0.3, 0.5, 0.7, 0.9, 1.1]
+thresholds = [0.3, 0.6, 0.9]
 found = ns.crossing_probability(
     scene, thresholds, horizons=[2.0], p=10, method="importance_sampling", seed=1
 ).isel(horizon=0)

@@ -16,6 +16,7 @@ SLOW = {
     "far_start",
     "my_oscillator",
     "own_formulas",
+    "rare_crossing",
     "which_method",
 }  # 5 s and more
 
