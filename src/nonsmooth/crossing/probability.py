@@ -240,7 +240,7 @@ def _attempts(scene, horizons, p, given, thresholds):
         fast = pilot <= choice.pilot_share * most and least <= most
         return [("monte_carlo", {"most": most})] if fast else []
 
-    solves = windows * (1 + choice.one_more * (thresholds - 1))
+    solves = windows * thresholds  # each threshold is solved by itself
     attempts = sampled(solves * choice.seconds_solved[scene.dimension - 1]) + attempts
     covered = scene.is_line and scene.is_odd() and not scene.grows_too_fast
     if covered and tol * p**2 >= choice.least_corrected:

@@ -14,7 +14,6 @@ class MethodChoice:
     # between the first and the last time; fitted: as above
     seconds_solved: tuple[float, float] = (0.4, 8.0)
     window: float = 20.0
-    one_more: float = 0.5  # of these for each threshold but the first; fitted: as above
     seconds_corrected: float = 0.05  # of the corrected formula; fitted: as above
     # least error of the corrected formula of the order 3, times p^2; fitted: as above
     least_corrected: float = 0.03

@@ -143,9 +143,10 @@ def _combined(scene, tol, functional, allowed, floor):
     def vain(combination):
         return combination.error <= chosen.others * allowed(combination.value, tol)
 
-    _enlarge(combination, error, enough, no_digit, vain, largest, 1 + len(directions))
-    best = grid(combination.dearest())
-    return Combined(combination.value, error(combination), scene, best, accuracy)
+    value, bound, index = _enlarge(
+        combination, error, enough, no_digit, vain, largest, 1 + len(directions)
+    )
+    return Combined(value, bound, scene, grid(index), accuracy)
 
 
 def _box_effect(coarse, base, on):
@@ -176,22 +177,30 @@ def _enlarge(combination, error, enough, no_digit, vain, largest, patience):
 
     There is none if nothing affordable is left, or what is in the way is not the grid, or no digit
     is right and refining every variable has not made the error smaller.
+
+    Return value, error and costliest grid when it was enough, or else when the error was least: on
+    very fine grids rounding may grow.
     """
-    least, stalled = math.inf, 0
+
+    def state():
+        return combination.value, error(combination), combination.dearest()
+
+    best, stalled = state(), 0
     left = tuning.GAMMA2_ON_GRIDS.work * largest
     with counter("grids") as advance:
         while not (enough(combination) or vain(combination)):
             try:
                 cost = combination.refine(min(largest, left))
             except ToleranceError:  # a finer grid on which the iteration does not converge
-                return
+                return best
             left -= cost
-            reached = error(combination)
-            stalled = 0 if reached < least else stalled + 1
-            least = min(least, reached)
+            reached = state()
+            better = reached[1] < best[1]
+            best, stalled = (reached, 0) if better else (best, stalled + 1)
             if not cost or (stalled >= patience and no_digit(combination)):
-                return
+                return best
             advance(1)
+    return state()
 
 
 def _directions(grid):
