@@ -47,5 +47,13 @@ RESULTS = {
             COLORED_FRICTION, 2.0, step=0.1, paths=3, times=TIMES, keep="paths"
         ),
         "brownian_crossing": _levels,
+        "crossing_threshold": lambda: ns.crossing_threshold(
+            FRICTION, [0.1, 0.5], TIMES, method="asymptotic"
+        ),
+        "failure_time": lambda: ns.failure_time(FRICTION, 0.6, [0.1, 0.5], method="asymptotic"),
+        "hazard_rate": lambda: ns.hazard_rate(FRICTION, 0.6, TIMES, **STEPS),
+        "reliability_index": lambda: ns.reliability_index(
+            ns.crossing_probability(FRICTION, [0.5, 0.6], TIMES, method="asymptotic")
+        ),
     }.items()
 }

@@ -5,7 +5,7 @@ What is known about a variable q, as its error q_error, is listed in its `ancill
 the CF conventions ask for.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
 import xarray as xr
@@ -48,6 +48,45 @@ def dataset(
         if known := [other for other in variables if other in named]:
             found[name].attrs["ancillary_variables"] = " ".join(known)
     return found
+
+
+def between_limits(
+    coords: Mapping[str, tuple],
+    dims: tuple[Hashable, ...],
+    name: str,
+    title: str,
+    parts: Iterable[Any],
+    **attributes: Any,
+) -> xr.Dataset:
+    """Assemble a dataset of one quantity with its error and the limits between which it is.
+
+    Parameters
+    ----------
+    coords
+        As for `dataset`.
+    dims : tuple of hashable
+        Dimensions of all four parts.
+    name, title : str
+        Name and long name of the quantity.
+    parts : iterable of array_like
+        The quantity, its error, its lower and its upper limit.
+    **attributes
+        As for `dataset`.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    titles = {
+        name: title,
+        f"{name}_error": f"error of the {title}",
+        "lower": f"lower limit of the {title}",
+        "upper": f"upper limit of the {title}",
+    }
+    variables = {
+        key: (dims, part, told) for (key, told), part in zip(titles.items(), parts, strict=True)
+    }
+    return dataset(coords, variables, about={name: ("lower", "upper")}, **attributes)
 
 
 def described_by(data: xr.Dataset, name: str) -> list[str]:

@@ -10,6 +10,7 @@ from nonsmooth.crossing.counting import proportion
 from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.errors import answered
 from nonsmooth.reliability import tuning
+from nonsmooth.results import between_limits
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.thresholds import bounds
 
@@ -67,12 +68,8 @@ def hazard_rate(
             found = _counted(at, points, int(run.attrs["paths"]))
         else:
             found = _differentiated(at, horizons)
-        names = ("hazard_rate", "hazard_rate_error", "lower", "upper")
-        return xr.Dataset(
-            {name: ("horizon", part) for name, part in zip(names, found, strict=True)},
-            coords={"horizon": horizons},
-            attrs=run.attrs,
-        )
+        over = {"horizon": ("horizon", horizons, "horizon T")}
+        return between_limits(over, ("horizon",), "hazard_rate", "hazard rate", found, **run.attrs)
 
     return answered(
         lambda: crossing_probability(

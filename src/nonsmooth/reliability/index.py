@@ -5,6 +5,7 @@ import xarray as xr
 from scipy.special import ndtri
 
 from nonsmooth.errors import SceneError, quoted
+from nonsmooth.results import between_limits
 
 _NEEDED = "probability", "probability_error", "lower", "upper"
 
@@ -41,12 +42,17 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
     # where W is 0 or 1 itself, so is beta infinite, and its error
     with np.errstate(invalid="ignore"):
         moved = [abs(-ndtri((W + sign * error).clip(0, 1)) - beta) for sign in (-1, 1)]
-    return xr.Dataset(
-        {
-            "reliability_index": beta,
-            "reliability_index_error": np.maximum(*moved).fillna(np.inf),
-            "lower": -ndtri(upper),
-            "upper": -ndtri(lower),
-        },
-        attrs=crossing.attrs,
+    found = between_limits(
+        {},
+        W.dims,
+        "reliability_index",
+        "reliability index",
+        (
+            beta.values,
+            np.maximum(*moved).fillna(np.inf).values,
+            -ndtri(upper.values),
+            -ndtri(lower.values),
+        ),
+        **crossing.attrs,
     )
+    return found.assign_coords(crossing.coords)

@@ -24,6 +24,7 @@ from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.reliability import tuning
 from nonsmooth.reliability.reach import typical_reach
 from nonsmooth.reliability.roots import FALLING, RISING, Root, Values, root_on_grid, solved_root
+from nonsmooth.results import between_limits
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
 
@@ -105,19 +106,14 @@ def crossing_threshold(
         return values(x, tol, [k % len(horizons)])[0]
 
     def present(roots):
-        parts = {
-            name: (("probability", "horizon"), part.reshape(len(targets), len(horizons)))
-            for name, part in zip(
-                ("threshold", "threshold_error", "lower", "upper"),
-                np.array(roots).T,
-                strict=True,
-            )
+        dims = ("probability", "horizon")
+        over = {
+            "probability": ("probability", targets, "probability of a crossing"),
+            "horizon": ("horizon", horizons, "horizon T"),
         }
-        return xr.Dataset(
-            parts,
-            coords={"probability": targets, "horizon": horizons},
-            attrs={"sides": sides} | ask.attributes,
-        )
+        parts = [part.reshape(len(targets), len(horizons)) for part in np.array(roots).T]
+        told = {"sides": sides} | ask.attributes
+        return between_limits(over, dims, "threshold", "threshold", parts, **told)
 
     return answered(
         lambda: ask.roots(
@@ -185,14 +181,9 @@ def failure_time(
         return curves(x, tol)[0]
 
     def present(roots):
-        names = ("time", "time_error", "lower", "upper")
-        return xr.Dataset(
-            {
-                name: ("probability", part)
-                for name, part in zip(names, np.array(roots).T, strict=True)
-            },
-            coords={"probability": targets},
-            attrs=ask.attributes,
+        over = {"probability": ("probability", targets, "probability of a crossing")}
+        return between_limits(
+            over, ("probability",), "time", "time", np.array(roots).T, **ask.attributes
         )
 
     return answered(

@@ -5,7 +5,7 @@ import warnings
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import AssumptionWarning, ExpressionError, NonsmoothError, SceneError
+from nonsmooth.errors import AssumptionWarning, NonsmoothError, SceneError
 from nonsmooth.scenes.scene import by_formulas
 
 
@@ -110,7 +110,7 @@ def test_penalty_force_is_an_observable():
     assert scene.state == ("y",)
     assert scene.is_odd()
     assert not ns.Scene("friction", observable="y + 1").is_odd()
-    with pytest.raises(ExpressionError):
+    with pytest.raises(SceneError, match="write 'friction_force'"):
         ns.Scene("friction", observable="contact_force")
 
 
