@@ -146,8 +146,8 @@ def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
     """One job, for there is one scene."""
     edit(
         finished.folder / "config/smoke.yaml",
-        "  p: [10]\n  outputs: 8",
-        "  p: [10, 20]\n  outputs: 8",
+        "  p: [1, 10]\n  outputs: 8",
+        "  p: [1, 10, 20]\n  outputs: 8",
     )
     jobs = finished.jobs()
     assert {name for name in jobs if name.startswith("sweep")} == {"sweep_crossing"}
