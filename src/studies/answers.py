@@ -181,10 +181,7 @@ def answer_batch(
         key = code.copy()
         key.update(json.dumps(parameters, sort_keys=True).encode())
         found.append(_kept(Path(store) / f"{key.hexdigest()[:32]}.nc", parameters, threads))
-    merged = xr.concat(
-        found, "scene", data_vars="all", coords="minimal", compat="override", join="override",
-        combine_attrs="override",
-    )  # fmt: skip
+    merged = joined(found)
     position = {"long_name": "position of the scene in the batch", "units": "1"}
     merged = merged.assign_coords(scene=("scene", np.arange(len(found)), position))
     first = next(name for name in QUESTIONS[question["ask"]].values if name in merged.data_vars)
@@ -192,6 +189,14 @@ def answer_batch(
     merged[first].attrs["method"] = ", ".join(sorted(methods))
     merged.attrs["summary"] = f"{len(found)} scenes: {', '.join(scenes)}"
     return merged
+
+
+def joined(parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Put answers to one question after each other, over `scene`; each has one scene or many."""
+    return xr.concat(
+        parts, "scene", data_vars="all", coords="minimal", compat="override", join="override",
+        combine_attrs="override",
+    )  # fmt: skip
 
 
 def _kept(path, parameters, threads):

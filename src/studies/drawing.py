@@ -12,21 +12,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from nonsmooth.plotting.style import ORANGE
+from nonsmooth.plotting.style import STYLE as PRINTED
 from nonsmooth.scenes.scene import Scene
 
 LINE = {"color": "black", "linewidth": 1.2, "solid_capstyle": "butt"}
 GREY = {"color": "0.45", "linewidth": 0.7}
-STYLE = {
-    "font.family": "STIXGeneral",
-    "mathtext.fontset": "stix",
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "0.9",
-    "legend.frameon": False,
-    "svg.hashsalt": "nonsmooth",
-}
+# larger than in print, and the same names of elements on every run
+STYLE = PRINTED | {"font.size": 9, "svg.hashsalt": "nonsmooth"}
 LEFT, MASS, WIDTH, FLOOR = 0.0, 3.0, 1.3, 0.0
 
 
@@ -92,7 +85,7 @@ def _ground(axis):
     t = np.linspace(0, 1.9, 120)
     phases = np.array([1.0, 2.7, 4.1, 0.3, 5.2])
     wave = sum(np.sin((5 + 4.3 * k) * t + phase) for k, phase in enumerate(phases))
-    axis.plot(-0.2 + t, -0.62 + 0.06 * wave, color="#D55E00", linewidth=0.8)
+    axis.plot(-0.2 + t, -0.62 + 0.06 * wave, color=ORANGE, linewidth=0.8)
 
 
 def _spring(axis, left, right, height):

@@ -10,11 +10,11 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
+from nonsmooth.plotting.style import BLACK, BLUE, GREEN, ORANGE, SKY
 from studies.questions import Question
 from studies.units import in_figures, pretty
 
-BLUE = "#0072B2"
-COLORS = [BLUE, "#D55E00", "#009E73", "#56B4E9", "#000000"]
+COLORS = [BLUE, ORANGE, GREEN, SKY, BLACK]
 WIDTH, HEIGHT = 4.6, 2.5
 _LIMITS = ("lower", "upper")
 

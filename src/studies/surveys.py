@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from nonsmooth.errors import NonsmoothError
 from reproduction.jobs import artifact
 from studies import drawing, figures
+from studies.answers import joined
 from studies.questions import QUESTIONS
 from studies.scenes import QUANTITIES
 from studies.study import Study
@@ -67,10 +67,7 @@ def survey(study: Study, name: str, folder: Path, timings: Path) -> dict[str, An
 def _merged(parts):
     """Put the answers of all jobs after each other; a job has one scene or many."""
     parts = [part if "scene" in part.dims else part.expand_dims("scene") for part in parts]
-    return xr.concat(
-        parts, "scene", data_vars="all", coords="minimal", compat="override", join="override",
-        combine_attrs="override",
-    )  # fmt: skip
+    return joined(parts)
 
 
 def _last(variable):

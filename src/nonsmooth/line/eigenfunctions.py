@@ -40,10 +40,6 @@ class Spectrum:
 def spectrum(scene: Scene, degree: int) -> Spectrum:
     """Solve the eigenproblem of -A.
 
-    Instead of K phi = lambda M phi, the equivalent M phi = nu (M + K/s) phi is solved, with
-    nu = 1/(1 + lambda/s) and s = C_b, which is of the size of the small eigenvalues. Rounding
-    errors are then relative to these, which matter most, and not to the largest one.
-
     Parameters
     ----------
     scene : Scene
@@ -62,26 +58,54 @@ def spectrum(scene: Scene, degree: int) -> Spectrum:
         If entries of the matrices overflow.
     """
     nodes, mass, stiffness, observable = assemble(scene, degree)
-    shifted = mass + stiffness / scene.damping
-    scale = 1 / np.sqrt(np.diag(shifted))
-    balance = np.outer(scale, scale)
     try:
-        nu, vectors = scipy.linalg.eigh(mass * balance, shifted * balance)
+        rates, vectors = modes(mass, stiffness, scene.damping)
     except (ValueError, np.linalg.LinAlgError):
         raise ToleranceError(
             f"the generator with C_b = {scene.damping:g}, n = {scene.n:g} and sigma = "
             f"{scene.noise.sigma:g} overflows in double precision; choose them closer to 1"
         ) from None
-    keep = nu > tuning.SPECTRAL_ELEMENTS.least_nu
-    nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * scale[:, None]
-    vectors /= np.sqrt(nu)  # normalised in L^2(m)
     start = vectors[np.argmin(np.abs(nodes - scene.start.get("y", 0.0)))]
     vectors, start = vectors * np.sign(start[0]), start * np.sign(start[0])  # so that phi_0 = 1
     product = vectors.T @ observable @ vectors
-    product -= product[0, 0] * np.eye(len(nu))
-    rates = scene.damping * (1 / nu - 1)
+    product -= product[0, 0] * np.eye(len(rates))
     rates[0] = 0.0
     return Spectrum(rates, product[0], product, start)
+
+
+def modes(mass: np.ndarray, stiffness: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarray]:
+    """Solve K phi = lambda M phi.
+
+    The equivalent M phi = nu (M + K/s) phi is solved, with nu = 1/(1 + lambda/s) and s of the size
+    of the small eigenvalues. Rounding errors are then relative to these, which matter most, and not
+    to the largest one.
+
+    Parameters
+    ----------
+    mass, stiffness : numpy.ndarray, shape (k, k)
+        M and K.
+    scale : float
+        s.
+
+    Returns
+    -------
+    rates : numpy.ndarray, shape (m,)
+        Increasing lambda, without those that consist of rounding.
+    vectors : numpy.ndarray, shape (k, m)
+        phi, of the norm 1 in L^2(m).
+
+    Raises
+    ------
+    ValueError, numpy.linalg.LinAlgError
+        If entries of the matrices overflow.
+    """
+    shifted = mass + stiffness / scale
+    balance = 1 / np.sqrt(np.diag(shifted))
+    both = np.outer(balance, balance)
+    nu, vectors = scipy.linalg.eigh(mass * both, shifted * both)
+    keep = nu > tuning.SPECTRAL_ELEMENTS.least_nu
+    nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * balance[:, None]
+    return scale * (1 / nu - 1), vectors / np.sqrt(nu)
 
 
 def mean(scene: Scene) -> float:

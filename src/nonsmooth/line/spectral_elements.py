@@ -4,8 +4,9 @@ The drift is smooth on each element: elements have their edges on its kinks and 
 them, so that the error falls exponentially with the polynomial degree for every penalization.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -50,6 +51,61 @@ def mesh(scene: Scene) -> np.ndarray:
     return mirrored([start, *outer, *inner])
 
 
+@dataclass(frozen=True)
+class Weighted:
+    """Elements with a rule of quadrature in L^2(m).
+
+    Attributes
+    ----------
+    half : numpy.ndarray, shape (e,)
+        Half of the widths of the elements.
+    nodes : numpy.ndarray, shape (e, d + 1)
+    points, weights : numpy.ndarray, shape (e, q)
+        Gauss points, and their weights times m.
+    values, slopes : numpy.ndarray, shape (q, d + 1)
+        Of the nodal functions at the points; slopes on an element of half width 1.
+    """
+
+    half: np.ndarray
+    nodes: np.ndarray
+    points: np.ndarray
+    weights: np.ndarray
+    values: np.ndarray
+    slopes: np.ndarray
+
+    def products(self, factor: np.ndarray | float = 1.0) -> np.ndarray:
+        """Return <f phi_i, phi_j>, shape (k, k), for a factor f at the points."""
+        return summed(self.values.T @ (w[:, None] * self.values) for w in self.weights * factor)
+
+    def energies(self) -> np.ndarray:
+        """Return <phi_i', phi_j'>, shape (k, k)."""
+        scaled = self.weights / self.half[:, None] ** 2
+        return summed(energy(self.slopes, w) for w in scaled)
+
+
+def weighted(edges: np.ndarray, phi: Callable, degree: int) -> Weighted:
+    """Prepare elements for integrals with the weight m = exp(-Phi).
+
+    Parameters
+    ----------
+    edges : numpy.ndarray, shape (e + 1,)
+    phi : callable
+        Phi, of arrays.
+    degree : int
+        d, the polynomial degree.
+
+    Returns
+    -------
+    Weighted
+    """
+    local, points, weights, values, slopes = _reference_element(degree)
+    half = np.diff(edges) / 2
+    left, wide = edges[:-1, None], half[:, None]
+    at = left + wide * (points + 1)
+    nodes = left + wide * (local + 1)
+    return Weighted(half, nodes, at, weights * wide * np.exp(-phi(at)), values, slopes)
+
+
 @lru_cache(maxsize=8)
 def _reference_element(degree):
     """Nodes, Gauss points and weights, and the Lagrange basis with its slopes at these points."""
@@ -78,21 +134,11 @@ def assemble(scene: Scene, degree: int) -> tuple[np.ndarray, np.ndarray, np.ndar
     SceneError
         As from `mesh`, or if g is not finite.
     """
-    edges, phi = mesh(scene), depth(scene)
+    elements = weighted(mesh(scene), depth(scene), degree)
     g = vectorised(scene.numerical_observable(), (symbols.y,))
-    nodes, points, weights, values, slopes = _reference_element(degree)
-    mass, stiffness, observable = [], [], []
-    where = np.empty((len(edges) - 1) * degree + 1)
-    for k, (left, right) in enumerate(pairwise(edges)):
-        half = (right - left) / 2
-        where[k * degree : (k + 1) * degree + 1] = left + half * (nodes + 1)
-        at = left + half * (points + 1)
-        weight = weights * half * np.exp(-phi(at))
-        values_of_g = finite_observable(scene, g, at)
-        mass.append(values.T @ (weight[:, None] * values))
-        observable.append(values.T @ ((weight * values_of_g)[:, None] * values))
-        stiffness.append(energy(slopes, weight / half**2))
-    masses = summed(mass)
-    total = masses.sum()
+    observable = elements.products(finite_observable(scene, g, elements.points))
+    mass = elements.products()
+    total = mass.sum()
     factor = scene.noise.sigma**2 / 2
-    return where, masses / total, factor * summed(stiffness) / total, summed(observable) / total
+    nodes = np.append(elements.nodes[:, :-1], elements.nodes[-1, -1])
+    return nodes, mass / total, factor * elements.energies() / total, observable / total

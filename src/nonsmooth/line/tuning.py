@@ -29,7 +29,7 @@ class SpectralElements:
     past_start: float = 1.5  # chosen: the mesh ends at so many times the start, or farther out
     degree_of_mean: int = 12  # chosen: converged for every n, tests/.../test_eigenfunctions.py
     extra_points: int = 16  # chosen: Gauss points beyond the degree, for exp(-Phi) in an element
-    least_nu: float = 1e-13  # derived: modes with a smaller 1/(1 + lambda/C_b) consist of rounding
+    least_nu: float = 1e-13  # derived: modes with a smaller 1/(1 + lambda/s) consist of rounding
     rounding: float = 4.0  # fitted: twice the largest error seen against the closed form, over
     #                        n = 100 ... 1e6 and C_b = 0.2 ... 5, relative to eps degree^2 / width
 

@@ -75,6 +75,11 @@ def bias_over_change(order: float) -> float:
     return 1 / (1 - 2**-order)
 
 
+def fine_bias_over_change(order: float) -> float:
+    """Return the bias of half the step over what halving it changes."""
+    return 1 / (2**order - 1)
+
+
 def step_bias(change: np.ndarray, order: float) -> tuple[np.ndarray, np.ndarray]:
     """Bias of the variance of D due to the time step, and its standard error.
 

@@ -347,16 +347,9 @@ def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper,
     for k in range(first, last):  # counts the fine steps
         odd = k % 2 == 1
         now = began + (k // 2) * float(coarse.step)
-        mechanical_flow(fine, data, k == 0, k == 2 * steps, lanes)
-        if not odd:
-            mechanical_flow(coarse, joined, k == 0, k == 2 * steps, lanes)
-        if k == 2 * steps:
-            observe(data, lanes)
-            observe(joined, lanes)
-        else:
-            normal = 1 if odd and fine.normals == 1 else 0
-            if normal == 0:
-                normals(words, data, lanes)
+        flow_of_pair(fine, coarse, data, joined, k, steps, lanes)
+        if k < 2 * steps:
+            normal = draw(fine, words, data, odd, lanes)
             join_noise(fine, data, joined, normal, odd, lanes)
             noise_kick(fine, data, normal, lanes)
             start = now + fine.step if odd else now
@@ -367,6 +360,48 @@ def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper,
         if (k + 1) % FLUSH == 0 or k == 2 * steps:
             flush(data, total, lanes)
             flush(joined, other_total, lanes)
+
+
+@inlined
+def flow_of_pair(fine, coarse, data, joined, k, steps, lanes):
+    """Let two panels flow for what is due at the k-th fine step; at the end int g is completed.
+
+    Parameters
+    ----------
+    fine, coarse : NamedTuple
+        Coefficients of the fine and of the coarse step.
+    data, joined : array
+        Of the fine and of the coarse paths.
+    k, steps : int
+        The fine step, from 0 to 2 `steps`.
+    lanes : int
+    """
+    mechanical_flow(fine, data, k == 0, k == 2 * steps, lanes)
+    if k % 2 == 0:
+        mechanical_flow(coarse, joined, k == 0, k == 2 * steps, lanes)
+    if k == 2 * steps:
+        observe(data, lanes)
+        observe(joined, lanes)
+
+
+@inlined
+def draw(fine, words, data, odd, lanes):
+    """Draw normal numbers unless some are left, and return the row that has those of this step.
+
+    Parameters
+    ----------
+    fine : NamedTuple
+        Coefficients of the fine step.
+    words, data : array
+        Generators and values of a panel.
+    odd : bool
+        Whether the step is the second of a coarse one.
+    lanes : int
+    """
+    normal = 1 if odd and fine.normals == 1 else 0
+    if normal == 0:
+        normals(words, data, lanes)
+    return normal
 
 
 @inlined

@@ -5,6 +5,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import ndtri
 
+from nonsmooth.central_differences import central
 from nonsmooth.checks import require_increasing, require_positive
 from nonsmooth.crossing.counting import proportion
 from nonsmooth.crossing.probability import crossing_probability
@@ -81,16 +82,15 @@ def hazard_rate(
 
 
 def _differentiated(at, horizons):
-    """Differentiate log S at the middle of seven points, by differences of the orders 6 and 4."""
+    """Differentiate log S at the middle of seven points."""
     spacing = tuning.HAZARD.spacing
     S = at.get("survival", 1 - at["probability"])
     own = at.get("survival_error", at["probability_error"])
     own = own / np.maximum(S, np.finfo(float).tiny)
     log_S = np.log(np.maximum(S, np.finfo(float).tiny))
-    sixth = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
-    fourth = np.array([0, 1, -8, 0, 8, -1, 0]) / 12
-    rate, other = (-(log_S @ weights) / spacing / horizons for weights in (sixth, fourth))
-    error = np.abs(rate - other) + own @ np.abs(sixth) / spacing / horizons
+    inexact = own[:, 2::-1] + own[:, 4:]
+    slope, error = central(log_S[:, 2::-1].T, log_S[:, 4:].T, inexact.T, spacing)
+    rate, error = -slope / horizons, error / horizons
     # a relative error of S that is not small says nothing of its logarithm
     error = np.where(own.max(axis=1) < tuning.HAZARD.small, 2 * error, np.inf)
     rate = np.maximum(rate, 0.0)

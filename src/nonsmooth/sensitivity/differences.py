@@ -1,18 +1,15 @@
-"""Derivatives of solved crossing probabilities, by central differences of the orders 4 and 6.
+"""Derivatives of solved crossing probabilities, by central differences.
 
 The solver is accurate to many digits, so that differences of high order over a long step are, too.
-What the order 6 changes is far above its error and is stated.
 """
 
 import numpy as np
 
+from nonsmooth.central_differences import central
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.errors import ToleranceError
 from nonsmooth.sensitivity import tuning
 from nonsmooth.sensitivity.questions import Question
-
-_FOURTH = np.array([8, -1, 0]) / 12  # weights of f(x + k h) - f(x - k h), k = 1, 2, 3, over h
-_SIXTH = np.array([45, -9, 1]) / 60
 
 
 def logarithmic_derivative(
@@ -41,14 +38,14 @@ def logarithmic_derivative(
     """
     for step in tuning.DIFFERENCES.steps:
         accuracy = tol * step * tuning.DIFFERENCES.share
-        solved = [
-            [_solved(question.changed(parameter, side * k * step), accuracy) for side in (1, -1)]
-            for k in (1, 2, 3)
-        ]
-        rise = np.array([above[0] - below[0] for above, below in solved]) / step
-        inexact = np.array([above[1] + below[1] for above, below in solved]) / step
-        value = _SIXTH @ rise
-        error = np.abs(value - _FOURTH @ rise) + np.abs(_SIXTH) @ inexact
+        below, above = (
+            [_solved(question.changed(parameter, side * k * step), accuracy) for k in (1, 2, 3)]
+            for side in (-1, 1)
+        )
+        (low, low_error), (high, high_error) = (
+            np.moveaxis(np.array(side), 1, 0) for side in (below, above)
+        )
+        value, error = central(low, high, low_error + high_error, step)
         if np.all(error <= tol):
             return value, error
     raise ToleranceError(

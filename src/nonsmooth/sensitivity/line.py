@@ -9,13 +9,9 @@ expression at a fixed u:
 It is exact also on elements, where u is the largest among piecewise polynomials.
 """
 
-from itertools import pairwise
-
 import numpy as np
 import sympy
-from numpy.polynomial import legendre
 
-from nonsmooth.grids.elements import energy, lagrange, lobatto, summed
 from nonsmooth.line import spectral_elements
 from nonsmooth.line.potential import depth
 from nonsmooth.refine import Refined, until_agreement
@@ -61,18 +57,18 @@ def elasticity(scene: Scene, parameter: str, tol: float) -> Refined:
 def _gamma2_and_derivative(scene, parameter, degree):
     """Both on elements of one degree."""
     sigma = scene.noise.sigma
-    at, weight, values, slopes, place = _elements(scene, degree)
+    elements = spectral_elements.weighted(spectral_elements.mesh(scene), depth(scene), degree)
+    at, weight = elements.points, elements.weights
+    place = np.arange(len(at))[:, None] * degree + np.arange(degree + 1)
     g = vectorised(scene.numerical_observable(), (y,))(at)
     total = weight.sum()
     g = g - np.sum(weight * g) / total
-    stiffness = summed(
-        [energy(own, sigma**2 / 2 * w) for own, w in zip(slopes, weight, strict=True)]
-    )
+    stiffness = sigma**2 / 2 * elements.energies()
     right = np.zeros(len(stiffness))
-    np.add.at(right, place, np.einsum("eq,qk->ek", weight * g, values))
+    np.add.at(right, place, weight * g @ elements.values)
     u = _solution(stiffness, right)[place]
-    slope = np.einsum("eqk,ek->eq", slopes, u)
-    u = np.einsum("qk,ek->eq", values, u)
+    slope = u @ elements.slopes.T / elements.half[:, None]
+    u = u @ elements.values.T
     u = u - np.sum(weight * u) / total
 
     def mean(f):
@@ -85,18 +81,6 @@ def _gamma2_and_derivative(scene, parameter, degree):
     if parameter == "sigma":
         change -= 2 * sigma * mean(slope**2)
     return 2 * mean(g * u), change
-
-
-def _elements(scene, degree):
-    """Gauss points with weights times m, values and slopes of the nodal functions, and places."""
-    edges, phi = spectral_elements.mesh(scene), depth(scene)
-    nodes, _, _ = lobatto(degree)
-    points, weights = legendre.leggauss(degree + tuning.LINE.extra_points)
-    values, slopes = lagrange(nodes, points)
-    half = np.diff(edges)[:, None] / 2
-    at = np.array([left + (right - left) / 2 * (points + 1) for left, right in pairwise(edges)])
-    place = np.arange(len(half))[:, None] * degree + np.arange(degree + 1)
-    return at, weights * half * np.exp(-phi(at)), values, slopes / half[:, :, None], place
 
 
 def _solution(stiffness, right):

@@ -12,7 +12,7 @@ from nonsmooth.crossing import tuning as crossing_tuning
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.ensembles import coupled
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
-from nonsmooth.paths.moments import bias_over_change
+from nonsmooth.paths.moments import fine_bias_over_change
 from nonsmooth.paths.resolution import first_step, paths_for, refined_step, require_possible
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
@@ -79,7 +79,7 @@ def _sample(question, parameter, apart, sampling):
     near, wide = (_difference(question, parameter, k * apart, sampling) for k in (1, 2))
     order = registry.scheme(question.scene).weak_order(question.scene)
     (fine, coarse), (fine_wide, _) = near, wide
-    by_step = bias_over_change(order) * 2**-order * (coarse - fine)
+    by_step = fine_bias_over_change(order) * (coarse - fine)
     by_difference = (fine_wide - fine) / 3  # the bias of a central difference is of the order 2
     count = sampling.paths
 

@@ -18,7 +18,6 @@ class Line:
     degrees: tuple[int, ...] = (5, 8, 11, 15, 20)  # chosen: of the elements, coarse to fine
     safety: float = 2.0  # chosen: the error is so many times the change of the last two degrees
     rounding: float = 1e-10  # fitted: to differences of closed forms, n up to 1e6
-    extra_points: int = 16  # chosen: Gauss points beyond the degree, for m in an element
 
 
 @dataclass(frozen=True)

@@ -14,14 +14,15 @@ import math
 from itertools import pairwise
 
 import numpy as np
-import scipy.linalg
 
 from nonsmooth.crossing.state import tuning
 from nonsmooth.crossing.state.problem import StateCrossing
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids.elements import continuous, energy, lagrange, lobatto, summed
+from nonsmooth.grids.elements import continuous
 from nonsmooth.grids.grading import distinct, growing
 from nonsmooth.line import potential as line_potential
+from nonsmooth.line import spectral_elements
+from nonsmooth.line.eigenfunctions import modes
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.formulas import vectorised
 
@@ -127,29 +128,12 @@ def _edges(asked, phi, knot, first_time):
 
 def _probabilities(asked, edges, phi, times, degree):
     """Probability to have left the interval at some times, and the slowest rate."""
-    nodes, _, _ = lobatto(degree)
-    points, weights = np.polynomial.legendre.leggauss(degree + tuning.LINE.extra_points)
-    values, slopes = lagrange(nodes, points)
     lowest = phi(edges).min()
-    mass, stiffness = [], []
-    for left, right in pairwise(edges):
-        half = (right - left) / 2
-        weight = weights * half * np.exp(lowest - phi(left + half * (points + 1)))
-        mass.append(values.T @ (weight[:, None] * values))
-        stiffness.append(energy(slopes, weight / half**2))
-    sigma = asked.scene.noise.sigma
-    inner = slice(1, -1)
-    whole = summed(mass)
-    mass_inner, stiff = whole[inner, inner], sigma**2 / 2 * summed(stiffness)[inner, inner]
-    # nu = 1 / (1 + lambda / scale) has a small relative error also if lambda is small
-    scale = (sigma / (edges[-1] - edges[0])) ** 2
-    shifted = mass_inner + stiff / scale
-    balance = 1 / np.sqrt(np.diag(shifted))
-    both = np.outer(balance, balance)
-    nu, vectors = scipy.linalg.eigh(mass_inner * both, shifted * both)
-    keep = nu > tuning.LINE.least_nu
-    nu, vectors = nu[keep], vectors[:, keep] * balance[:, None] / np.sqrt(nu[keep])
-    rates = scale * (1 / nu - 1)
+    elements = spectral_elements.weighted(edges, lambda at: phi(at) - lowest, degree)
+    mass, sigma, inner = elements.products(), asked.scene.noise.sigma, slice(1, -1)
+    stiffness = sigma**2 / 2 * elements.energies()[inner, inner]
+    slow = (sigma / (edges[-1] - edges[0])) ** 2
+    rates, vectors = modes(mass[inner, inner], stiffness, slow)
     at = continuous(edges, degree).interpolation(asked.start).toarray()[0, inner]
-    weight = (whole[inner].sum(axis=1) @ vectors) * (at @ vectors)
-    return 1 - np.exp(-np.outer(times, rates)) @ weight, rates.min()
+    weight = (mass[inner].sum(axis=1) @ vectors) * (at @ vectors)
+    return 1 - np.exp(-np.outer(times, rates)) @ weight, rates[0]

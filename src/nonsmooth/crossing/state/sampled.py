@@ -11,6 +11,7 @@ from nonsmooth.crossing.state.problem import StateCrossing
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.absorption.survival import crossed
 from nonsmooth.paths.kernels.random_numbers import labelled
+from nonsmooth.paths.moments import fine_bias_over_change
 from nonsmooth.paths.resolution import first_step, refined_step, require_possible
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.tuning import MONTE_CARLO
@@ -102,8 +103,7 @@ def _sample(asked, times, sampling, envelope):
     sums = crossed(asked.scene, asked.followed, levels, times, sampling, envelope)
     paths = sampling.paths
     counts, change, square = np.clip(sums[:, 0], 0.0, paths), sums[:, 1] / paths, sums[:, 2] / paths
-    # what doubling the step changes is (2^q - 1) times the bias; if no path shows a change, the
-    # error is that of a single path with different outcomes
-    factor = 1 / (2**tuning.SAMPLED.order - 1)
+    # if no path shows a change, the error is that of a single path with different outcomes
+    factor = fine_bias_over_change(tuning.SAMPLED.order)
     error = factor * np.sqrt(np.maximum(square - change**2, 1 / paths) / paths)
     return counts, outcome(counts, paths, sampling.step, factor * change, error)

@@ -19,8 +19,6 @@ class Line:
     )
     finest: float = 1e-4  # chosen: smallest element over the interval; smaller ones lose digits
     steepest: float = 4.0  # chosen: change of Phi over an element, at most
-    extra_points: int = 16  # chosen: Gauss points beyond the degree, for exp(-Phi) in an element
-    least_nu: float = 1e-13  # derived: modes with a smaller 1 / (1 + lambda / scale) are rounding
     rounding: float = 0.02  # fitted: to values by closed forms, relative to eps degree^2 / width
     least: float = 1e-14  # derived: rounding of the sum over the modes
 
@@ -55,7 +53,7 @@ class Plane:
     # chosen: longest step on level 0 up to late times; later there are so many before it is doubled
     longest: float = 0.2
     late: float = 60.0
-    # fitted: tolerance from which on paths, some seconds, are faster than two levels
+    # chosen: tolerance from which on paths, some seconds, are faster than two levels
     faster_sampled: float = 2e-3
 
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from nonsmooth.paths.kernels.compilation import announced, inlined, kernel
 from nonsmooth.paths.kernels.panel import Panel
-from nonsmooth.paths.kernels.random_numbers import normals
 from nonsmooth.paths.parallel import count
 from nonsmooth.paths.time_loop import (
+    draw,
     join_noise,
     mechanical_flow,
     noise_kick,
@@ -99,12 +99,10 @@ def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival,
         odd = k % 2 == 1
         own = scale[k] if len(scale) > 0 else 1.0
         joint = math.sqrt((scale[k - 1] ** 2 + own**2) / 2) if odd and len(scale) > 0 else 1.0
-        normal = 1 if odd and fine.normals == 1 else 0
         for end in range(2):
             mechanical_flow(fine, data, end == 0, end == 1, lanes)
             if end == 0:
-                if normal == 0:
-                    normals(words, data, lanes)
+                normal = draw(fine, words, data, odd, lanes)
                 join_noise(fine, data, joined, normal, odd, lanes)
                 if len(scale) > 0:
                     _multiply(data, normal, fine.normals, own, lanes)

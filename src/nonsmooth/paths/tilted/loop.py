@@ -31,6 +31,8 @@ from nonsmooth.paths.kernels.vector_math import fma, like, maximum, minimum, whe
 from nonsmooth.paths.parallel import count
 from nonsmooth.paths.tilted.tilt import Tilt
 from nonsmooth.paths.time_loop import (
+    draw,
+    flow_of_pair,
     join_noise,
     mechanical_flow,
     noise_kick,
@@ -176,16 +178,9 @@ def _march_pair(
     memory = numba.carray(pointer(memory.ctypes), (_MEMORY, WIDTH))
     for k in range(first, last):  # counts the fine steps
         odd = k % 2 == 1
-        mechanical_flow(fine, data, k == 0, k == 2 * steps, lanes)
-        if not odd:
-            mechanical_flow(coarse, joined, k == 0, k == 2 * steps, lanes)
-        if k == 2 * steps:
-            observe(data, lanes)
-            observe(joined, lanes)
-        else:
-            normal = 1 if odd and fine.normals == 1 else 0
-            if normal == 0:
-                normals(words, data, lanes)
+        flow_of_pair(fine, coarse, data, joined, k, steps, lanes)
+        if k < 2 * steps:
+            normal = draw(fine, words, data, odd, lanes)
             _shift(tilt, data, memory, normal, fine.step, began + k * fine.step, lanes)
             join_noise(fine, data, joined, normal, odd, lanes)
             noise_kick(fine, data, normal, lanes)
