@@ -2,15 +2,18 @@
 
 scipy's SuperLU frees memory only in the thread that has allocated it; elsewhere the memory is lost.
 And Python hears Ctrl-C only in its main thread, between two of its own instructions. So factors are
-made in a thread of their own, for which the caller waits, and go back to it to be freed.
+made in a thread of their own, for which the caller waits, and go back to it to be freed; at the
+end of the program, too, which would otherwise report an error.
 """
 
+import atexit
 import queue
 import threading
 import weakref
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from functools import partial
+from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,6 +27,8 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.progress import fulfil
 from nonsmooth.scenes.scene import Scene
 
+_CLOSING = 1.0  # seconds that the end of the program waits for factors to be freed
+
 
 class _Workshop:
     """A thread that does one task after the other."""
@@ -31,6 +36,7 @@ class _Workshop:
     def __init__(self) -> None:
         self._tasks: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         threading.Thread(target=self._work, daemon=True).start()
+        atexit.register(self._close)
 
     def _work(self):
         while True:
@@ -39,6 +45,17 @@ class _Workshop:
     def put(self, task: Callable[[], None]) -> None:
         """Do a task later."""
         self._tasks.put(task)
+
+    def abandon(self) -> None:
+        """Let the thread go on with what nobody waits for any more."""
+        atexit.unregister(self._close)
+
+    def _close(self):
+        for factors in SparseFactors.alive:
+            factors.free()
+        done = threading.Event()
+        self.put(done.set)
+        done.wait(_CLOSING)
 
 
 class SparseFactors:
@@ -54,7 +71,8 @@ class SparseFactors:
         If the memory does not hold the factors.
     """
 
-    _workshop: _Workshop | None = None
+    alive: ClassVar[weakref.WeakSet["SparseFactors"]] = weakref.WeakSet()
+    _workshop: ClassVar[_Workshop | None] = None
 
     def __init__(self, matrix: sp.sparray):
         self._made: list[spla.SuperLU] = []
@@ -62,7 +80,9 @@ class SparseFactors:
         done: Future = Future()
         workshop.put(partial(fulfil, done, partial(_factorise, matrix, self._made)))
         # the task must not refer to this object, or it would never be freed
-        weakref.finalize(self, workshop.put, self._made.clear).atexit = False
+        self.free = weakref.finalize(self, workshop.put, self._made.clear)
+        self.free.atexit = False  # the workshop closes earlier
+        SparseFactors.alive.add(self)
         try:
             done.result()
         except MemoryError:
@@ -71,7 +91,8 @@ class SparseFactors:
                 "larger tol or Monte Carlo, or free memory"
             ) from None
         except KeyboardInterrupt:
-            SparseFactors._workshop = None  # it goes on with what nobody waits for any more
+            workshop.abandon()
+            SparseFactors._workshop = None
             raise
 
     def solve(self, right: np.ndarray, trans: str = "N") -> np.ndarray:

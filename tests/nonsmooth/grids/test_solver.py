@@ -1,5 +1,7 @@
 """Every solver on grids keeps the contract `PoissonSolver`, that of the manual's page as well."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -105,3 +107,15 @@ def test_factors_are_freed():
         taken.append(psutil.Process().memory_info().rss)
     one = 12 * scipy.sparse.linalg.splu(plane.tocsc()).nnz  # a number and its row
     assert taken[-1] - taken[4] < 5 * one
+
+
+def test_programs_that_keep_factors_end_well():
+    """What is printed reaches a pipe, and the exit code is 0, also with factors still alive."""
+    program = (
+        "import numpy as np, scipy.sparse as sp\n"
+        "from nonsmooth.grids.direct_solver import SparseFactors\n"
+        "factors = SparseFactors(sp.eye_array(3) * 2.0)\n"
+        "print(factors.solve(np.ones(3)))"
+    )
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (ended.stdout, ended.stderr, ended.returncode) == ("[0.5 0.5 0.5]\n", "", 0)
