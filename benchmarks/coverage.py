@@ -9,7 +9,8 @@ import pandas as pd
 from scipy import stats
 
 import nonsmooth as ns
-from nonsmooth.crossing.counting import first_passage_counts, proportion
+from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.crossing.proportions import proportion
 from nonsmooth.paths.ensembles import gram, integrals_at
 from nonsmooth.paths.moments import moments
 from nonsmooth.paths.sampling import Sampling

@@ -10,7 +10,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import binom
 
 from nonsmooth.crossing.brownian import brownian_crossing
-from nonsmooth.crossing.counting import crossing_estimate
+from nonsmooth.crossing.proportions import crossing_estimate
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins

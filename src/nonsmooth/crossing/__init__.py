@@ -12,7 +12,8 @@ or by counting paths. The manual has the derivations and the choice of the metho
 - `corrected_formula.corrected_crossing`: corrected formulas with their errors, from the
   distribution functions of `expansion` and the mean over the clock of `random_clock`.
 - `first_passage.distribution.deterministic_crossing`: the deterministic method.
-- `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting`.
+- `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting` and the
+  intervals of `proportions`.
 - `state.crossing.state_crossing_probability`: crossings of the state, not of an integral.
 - `curves.curves`: probabilities over horizons, as the public functions return them.
 - `tuning`: resolutions and switching points.

@@ -6,13 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from nonsmooth.crossing import tuning
-from nonsmooth.crossing.counting import (
-    bias_of_counts,
-    crossing_estimate,
-    first_passage_counts,
-    limits_less_bias,
-    proportion,
-)
+from nonsmooth.crossing.counting import bias_of_counts, first_passage_counts
+from nonsmooth.crossing.proportions import crossing_estimate, limits_less_bias, proportion
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.ensembles import coupled, coupled_crossings
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled

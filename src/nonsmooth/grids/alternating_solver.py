@@ -126,8 +126,12 @@ class AlternatingSolver:
         if not self.mirrored:
             result = apply(parity, columns)
         else:
-            even = (columns + columns[:, ::-1]) / 2
-            result = apply(parity, even) + apply(-parity, columns - even)
+            half = -(-self._oscillator // 2)
+            left, right = columns[:, :half], columns[:, ::-1][:, :half]
+            even, odd = apply(parity, (left + right) / 2), apply(-parity, (left - right) / 2)
+            result = np.empty_like(columns)
+            result[:, ::-1][:, :half] = even - odd
+            result[:, :half] = even + odd
         return result.reshape(self._kept, self._own, self._oscillator).transpose(0, 2, 1)
 
     def generator(self, values: np.ndarray, parity: int, adjoint: bool = False) -> np.ndarray:

@@ -7,8 +7,8 @@ from scipy.special import ndtri
 
 from nonsmooth.central_differences import central
 from nonsmooth.checks import require_increasing, require_positive
-from nonsmooth.crossing.counting import proportion
 from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.crossing.proportions import proportion
 from nonsmooth.errors import answered
 from nonsmooth.reliability import tuning
 from nonsmooth.results import between_limits

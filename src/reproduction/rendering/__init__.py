@@ -1,7 +1,8 @@
 """What the paper shows: figures and tables, and what it prints itself.
 
-`plots`, `tables`
-    `draw` and the style of the figures; `typeset` and how numbers are spelled.
+`plots`, `panels`, `tables`
+    `draw` and the style of the figures; a panel for each kind of scene; `typeset` and how numbers
+    are spelled.
 `quoted`
     `Quoted`, `decimal`: numbers that the text quotes, with their errors.
 `printed`

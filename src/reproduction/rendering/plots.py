@@ -10,8 +10,6 @@ mpl.use("agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 # the scripts take the style from here
@@ -23,9 +21,6 @@ from nonsmooth.plotting.style import ORANGE as ORANGE
 from nonsmooth.plotting.style import SKY as SKY
 from nonsmooth.plotting.style import STYLE as STYLE
 from nonsmooth.plotting.style import TEXT_WIDTH as TEXT_WIDTH
-from nonsmooth.scenes.models.registry import MODELS
-from nonsmooth.scenes.noises import NOISES
-from nonsmooth.scenes.scene import Scene
 from reproduction.jobs.files import write_whole
 from reproduction.jobs.job import Task, inputs, job
 
@@ -49,46 +44,6 @@ def draw(plot: Callable, task: Task) -> None:
             figure.savefig(content, format=path.suffix[1:], metadata=metadata)
             write_whole(path, content.getvalue())
         plt.close(figure)
-
-
-def scene_panels(
-    height: float, xlabel: str, ylabel: str, **options
-) -> tuple[Figure, np.ndarray, Callable[[Scene], Axes]]:
-    """Make one panel for each kind of scene, models in rows and noises in columns.
-
-    Parameters
-    ----------
-    height : float
-        Of the figure, in text widths.
-    xlabel, ylabel : str
-        Labels of the outer panels; the second one stands below the name of the model.
-    **options
-        Of `matplotlib.pyplot.subplots`.
-
-    Returns
-    -------
-    figure : matplotlib.figure.Figure
-    axes : numpy.ndarray
-        All panels.
-    panel : callable
-        Finds the panel of a scene.
-    """
-    rows, columns = list(MODELS), list(NOISES)
-    figure, axes = plt.subplots(
-        len(rows),
-        len(columns),
-        figsize=(TEXT_WIDTH, height * TEXT_WIDTH),
-        sharey=True,
-        squeeze=False,
-        **options,
-    )
-    for row, model in zip(axes, rows, strict=True):
-        row[0].set_ylabel(f"{MODELS[model].title.lower()}\n{ylabel}")
-    for top, noise in zip(axes[0], columns, strict=True):
-        top.set_title(f"{noise} noise", fontsize=8, loc="left")
-    for bottom in axes[-1]:
-        bottom.set_xlabel(xlabel)
-    return figure, axes, lambda s: axes[rows.index(s.mechanics.name), columns.index(s.noise.kind)]
 
 
 def from_zero(values: ArrayLike) -> np.ndarray:

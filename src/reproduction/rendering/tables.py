@@ -5,15 +5,17 @@ Cells are LaTeX, with mathematics between dollar signs.
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import SupportsFloat
+from typing import TYPE_CHECKING, SupportsFloat
 
 import pandas as pd
 import tylax
 import xarray as xr
 
-from nonsmooth.scenes.scene import Scene
 from reproduction.jobs.files import write_whole
 from reproduction.jobs.job import Task, inputs, job
+
+if TYPE_CHECKING:  # most tables are made without the formulas of scenes
+    from nonsmooth.scenes.scene import Scene
 
 
 def typeset(build: Callable, task: Task) -> None:
@@ -86,7 +88,7 @@ def symbol(name: str) -> str:
     return f"${name}$" if len(name) == 1 else rf"$\{name}$"
 
 
-def described(scene: Scene) -> dict[str, str]:
+def described(scene: "Scene") -> dict[str, str]:
     """Spell a scene in four cells: its model, noise, state and observable."""
     return {
         "model": scene.mechanics.name.replace("_", "-"),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from nonsmooth.crossing.counting import DESCRIPTIONS, crossing_estimate
+from nonsmooth.crossing.proportions import DESCRIPTIONS, crossing_estimate
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 

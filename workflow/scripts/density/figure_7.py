@@ -1,7 +1,8 @@
 """Figure 7: invariant densities of every scene, by solvers and by simulation."""
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.rendering.plots import BLUE, ORANGE, draw, scene_panels
+from reproduction.rendering.panels import scene_panels
+from reproduction.rendering.plots import BLUE, ORANGE, draw
 
 LOOKS = {
     "y": (BLUE, "o", "-", "velocity $y$"),

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import ndtri
 
-from nonsmooth.crossing.counting import proportion
+from nonsmooth.crossing.proportions import proportion
 from reproduction.errors import CheckError
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce

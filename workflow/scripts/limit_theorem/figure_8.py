@@ -3,7 +3,8 @@
 import numpy as np
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.rendering.plots import BLUE, ORANGE, draw, scene_panels
+from reproduction.rendering.panels import scene_panels
+from reproduction.rendering.plots import BLUE, ORANGE, draw
 
 # the factor of p moves the points apart, so that their error bars do not cover each other
 LOOKS = {

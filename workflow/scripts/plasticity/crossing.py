@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from nonsmooth.crossing.counting import DESCRIPTIONS, crossing_estimate
 from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.crossing.proportions import DESCRIPTIONS, crossing_estimate
 from nonsmooth.paths import time_grids
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce

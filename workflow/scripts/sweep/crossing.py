@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from nonsmooth.crossing.counting import DESCRIPTIONS, crossing_estimate, first_passage_counts
+from nonsmooth.crossing.counting import first_passage_counts
+from nonsmooth.crossing.proportions import DESCRIPTIONS, crossing_estimate
 from nonsmooth.paths import time_grids
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.scenes.scene import Scene

@@ -3,7 +3,8 @@
 from itertools import cycle
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.rendering.plots import LOOKS, ORANGE, draw, scene_panels
+from reproduction.rendering.panels import scene_panels
+from reproduction.rendering.plots import LOOKS, ORANGE, draw
 
 
 def sweep(crossing, limit, check, scenes, p):
