@@ -78,6 +78,7 @@ sphinx_gallery_conf = {
             "earthquake.py",
             "stiffer_and_stiffer.py",
             "error_bars.py",
+            "sliding_isolator.py",
             "reading_an_artifact.py",
             "trajectories.py",
             "yielding_oscillator.py",

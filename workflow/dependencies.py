@@ -1,6 +1,7 @@
 """The source files on which a script depends; Snakemake does not find them by itself."""
 
 import ast
+from collections.abc import Iterable
 from functools import cache, lru_cache
 from pathlib import Path
 
@@ -36,11 +37,25 @@ def sources(script: str) -> list[str]:
             named |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Import):
             named |= {alias.name for alias in node.names}
-    direct = {name for name in named if name in _graph().modules} - set(PACKAGES)
-    needed = direct.union(*(_graph().find_upstream_modules(name) for name in direct)) - set(
-        PACKAGES
-    )
-    return sorted(map(_file, needed))
+    return imported(name for name in named if name in _graph().modules)
+
+
+def imported(modules: Iterable[str]) -> list[str]:
+    """List modules of the packages and what they import, directly or through others.
+
+    Parameters
+    ----------
+    modules : iterable of str
+        As Python names them.
+
+    Returns
+    -------
+    list of str
+        Paths relative to the repository, sorted.
+    """
+    direct = set(modules) - set(PACKAGES)
+    needed = direct.union(*(_graph().find_upstream_modules(name) for name in direct))
+    return sorted(map(_file, needed - set(PACKAGES)))
 
 
 def _file(module):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from reproduction.errors import ConfigError
 from studies.study import Study
+from workflow.dependencies import imported
 
 
 class Studies:
@@ -35,6 +36,13 @@ class Studies:
             return value if wildcard is None else value[wildcards[wildcard]]
 
         return found
+
+    def modules(self, study: str, question: str) -> list[str]:
+        """List the source files of the functions that answer a question."""
+        # the units take a second, which other targets need not wait for
+        from studies.questions import QUESTIONS
+
+        return imported(QUESTIONS[self.get(study).questions[question]["ask"]].modules)
 
     def file(self, name: str) -> Path:
         """Name the file of a study."""

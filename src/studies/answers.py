@@ -14,7 +14,7 @@ from nonsmooth.errors import AccuracyWarning, ToleranceError
 from nonsmooth.estimate import Estimate
 from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
-from studies.questions import INTEGRAL, PLAIN, QUESTIONS, VARIABLES
+from studies.questions import INTEGRAL, OF_TIME, PLAIN, QUESTIONS, VARIABLES
 from studies.scenes import observed, scene_of
 from studies.units import Powers, Units
 
@@ -79,15 +79,19 @@ def arguments(
 
     Raises
     ------
-    ConfigError
-        If a quantity cannot be read.
+    ConfigError, ExpressionError
+        If a quantity or a formula cannot be read.
     """
     kinds = QUESTIONS[question["ask"]].arguments
-    return {
-        name: value if kinds[name] == PLAIN else units.number(value, resolved(kinds[name], known))
-        for name, value in question.items()
-        if name != "ask"
-    }
+
+    def read(name, value):
+        kind = kinds[name]
+        if isinstance(kind, str):
+            assert kind == OF_TIME
+            return units.formula_of_time(value)
+        return value if kind == PLAIN else units.number(value, resolved(kind, known))
+
+    return {name: read(name, value) for name, value in question.items() if name != "ask"}
 
 
 def resolved(powers: Powers, known: Mapping[str, Powers]) -> dict[str, int]:
@@ -109,8 +113,8 @@ def _best(asked, scene, given):
         except ToleranceError as error:
             if error.result is None:
                 raise
-            return error.result, str(error)
-    return found, "; ".join(str(warning.message) for warning in caught)
+            return asked.turned(error.result), str(error)
+    return asked.turned(found), "; ".join(str(warning.message) for warning in caught)
 
 
 def _described(found, asked, units, known, summary, remark):
@@ -134,7 +138,15 @@ def _described(found, asked, units, known, summary, remark):
     if remark:
         result[first].attrs["comment"] = remark
     result.attrs = {"title": asked.title, "summary": summary}
-    return result
+    return _with_infinities(result)
+
+
+def _with_infinities(data):
+    """Say what infinite values mean, where there are some."""
+    for variable in data.data_vars.values():
+        if np.isinf(variable).any():
+            variable.attrs["infinite"] = "where nothing more is known"
+    return data
 
 
 def _meaning(name, asked):
@@ -188,7 +200,7 @@ def answer_batch(
     methods = {data[first].attrs["method"] for data in found}
     merged[first].attrs["method"] = ", ".join(sorted(methods))
     merged.attrs["summary"] = f"{len(found)} scenes: {', '.join(scenes)}"
-    return merged
+    return _with_infinities(merged)
 
 
 def joined(parts: Sequence[xr.Dataset]) -> xr.Dataset:

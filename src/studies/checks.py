@@ -109,7 +109,7 @@ def _check_meaning(study):
         for question_name, question in study.questions.items():
             try:
                 arguments(question, units, meanings(question, parameters))
-            except ConfigError as error:
+            except NonsmoothError as error:
                 key = dotted(("questions", question_name))
                 raise ConfigError(f"{key}, of {dotted(('scenes', name))}: {error}") from None
 

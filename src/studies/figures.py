@@ -47,31 +47,51 @@ def of_answer(data: xr.Dataset, asked: Question) -> list[Figure]:
     return [_curves(data, name) for name in curves]
 
 
+def limits(data: xr.Dataset, name: str) -> list[xr.DataArray]:
+    """Return the limits between which a variable is, infinite if it has none."""
+    return [
+        data.get(limit, xr.full_like(data[name], end))
+        for limit, end in zip(_LIMITS, (-np.inf, np.inf), strict=True)
+    ]
+
+
 def _curves(data, name):
     """Draw values over time with the band in which the truth is, one for each threshold or so."""
     figure, axis = plt.subplots(figsize=(WIDTH, HEIGHT), constrained_layout=True)
     *first, last = data[name].dims
     over, several = data[last], first[0] if first else "curve"
     curves = data if first else data.expand_dims(several)
+    bottom, top = _ends(data, name)
+    axis.set(xlabel=labelled(over), ylim=(bottom, top))
     for k in range(curves.sizes[several]):
         curve, color = curves.isel({several: k}), COLORS[k % len(COLORS)]
-        value, error = curve[name].values, curve[f"{name}_error"].values
-        low, high = value - error, value + error
-        if set(_LIMITS) <= set(data.data_vars):
-            low, high = (curve[limit].values for limit in _LIMITS)
+        low, high = (np.clip(end, bottom, top) for end in _band(curve, name))
         axis.fill_between(over, low, high, color=color, alpha=0.3, linewidth=0)
         label = _level(curve, several) if first else None
-        axis.plot(over, value, color=color, marker="o", markersize=3, label=label)
-    axis.set(xlabel=labelled(over), xlim=(0, None))
-    top = 1.05 * axis.get_ylim()[1]
-    if name == "probability":
-        axis.set(ylabel=name, ylim=(0, min(1.02, max(top, 1e-9))))
-    else:
-        axis.set_ylabel(f"{name}, {in_figures(data[name].attrs['units'])}".rstrip(", "))
-        axis.set_ylim(min(0, axis.get_ylim()[0]), top)
+        axis.plot(over, curve[name], color=color, marker="o", markersize=3, label=label)
+    axis.set_xlim(0, None)
+    axis.set_ylabel(
+        f"{name.replace('_', ' ')}, {in_figures(data[name].attrs['units'])}".rstrip(", ")
+    )
     if first:
         axis.legend(title=several, fontsize=8)
     return figure
+
+
+def _band(data, name):
+    """Return the limits between which a variable is."""
+    if set(_LIMITS) <= set(data.data_vars):
+        return [data[limit].values for limit in _LIMITS]
+    return [data[name].values + sign * data[f"{name}_error"].values for sign in (-1, 1)]
+
+
+def _ends(data, name):
+    """Return the ends of the axis of a variable, with 0 and all that is finite between them."""
+    shown = np.concatenate([np.ravel(part) for part in (data[name].values, *_band(data, name))])
+    low, high = (end(shown[np.isfinite(shown)], initial=0.0) for end in (np.min, np.max))
+    spare = 0.1 * (high - low) or 1e-9
+    top = high + spare if high > 0 or low == 0 else 0.0
+    return (low - spare if low < 0 else 0.0), min(top, 1.02) if name == "probability" else top
 
 
 def levels(data: xr.Dataset, name: str) -> list[str]:
@@ -157,6 +177,7 @@ def maps(
     matplotlib.figure.Figure
     """
     names = sorted(axes, key=lambda name: -len(axes[name]))[:2]
+    values = np.where(np.isfinite(values), values, np.nan)  # stays blank
     cube = xr.DataArray(values.reshape([len(axes[name]) for name in axes]), dims=list(axes))
     if len(names) == 1:
         return _line(cube, names[0], numbers, label)
@@ -171,7 +192,8 @@ def maps(
         rows, columns, figsize=(2.2 * columns + 1.0, 2.0 * rows + 0.3), squeeze=False,
         sharex=True, sharey=True, constrained_layout=True,
     )  # fmt: skip
-    low, high = float(values.min()), float(values.max())
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
     logarithmic = low > 0 and high > 30 * low
     norm = plt.matplotlib.colors.LogNorm(low, high) if logarithmic else None
     limits = {} if logarithmic else {"vmin": low, "vmax": high}

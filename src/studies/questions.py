@@ -3,30 +3,25 @@
 How to add one: an entry of `QUESTIONS`. The arguments are those of the function that a study may
 give, each with what it is: powers of the base quantities, with ``"g"`` for the observable,
 ``"variable"`` for the variable of the state and ``"parameter"`` for the parameter that the question
-names; `PLAIN` for numbers without
-units. The values are the variables of the answer; those that are not named are
-plain numbers. Errors have the units of what they belong to.
+names; `PLAIN` for numbers without units; `OF_TIME` for a formula in t. The values are the variables
+of the answer; those that are not named are plain numbers. Errors have the units of what they belong
+to.
+
+Functions are named, not imported: an answer then depends on the modules of its question and not on
+those of all others.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
 
-from nonsmooth.boundary_layer.extrapolation_length import extrapolation_length
-from nonsmooth.crossing.probability import crossing_probability
-from nonsmooth.crossing.state.crossing import state_crossing_probability
-from nonsmooth.reliability.mean_time import mean_time_to_failure
-from nonsmooth.reliability.quantiles import crossing_threshold, failure_time
-from nonsmooth.sensitivity.crossing import crossing_sensitivity
-from nonsmooth.sensitivity.gamma2 import asymptotic_variance_sensitivity
-from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
-from nonsmooth.statistics.invariant_density import invariant_density
-from nonsmooth.statistics.mean import mean
-from nonsmooth.statistics.spectral_gap import spectral_gap
-from nonsmooth.statistics.variance import variance
 from studies.units import Powers
 
 PLAIN: Powers = {}
+OF_TIME = "formula in t"
 TIME = {"time": 1}
+RATE = {"time": -1}
 INTEGRAL = {"g": 1, "time": 1}
 VARIABLE = {"variable": 1}
 # of the state; the accelerations of the ground are those of the noise
@@ -50,6 +45,27 @@ _CROSSING = {
     "paths": PLAIN,
     "order": PLAIN,
 }
+_COUNTED = {"precision": PLAIN, "envelope": OF_TIME}
+_THRESHOLDS = {
+    "threshold": (INTEGRAL, "threshold"),
+    "threshold_lower": (INTEGRAL, "lower end of the interval"),
+    "threshold_upper": (INTEGRAL, "upper end of the interval"),
+}
+_STATE = {
+    "variable": PLAIN,
+    "threshold": VARIABLE,
+    "horizons": TIME,
+    "method": PLAIN,
+    "tol": PLAIN,
+    "step": TIME,
+    "paths": PLAIN,
+}
+_INDEX = {
+    "reliability_index": (PLAIN, "reliability index beta of not having crossed"),
+    "lower": (PLAIN, "the index is above"),
+    "upper": (PLAIN, "the index is below"),
+    "horizon": (TIME, "time"),
+}
 
 
 @dataclass(frozen=True)
@@ -60,43 +76,66 @@ class Question:
     ----------
     title : str
         As a heading.
-    solve : callable
-        Takes a scene and arguments by name; returns an Estimate or an xarray.Dataset.
+    function : str
+        With its module. It takes a scene and arguments by name and returns an Estimate or an
+        xarray.Dataset.
     values : dict
         From variables and coordinates of the answer to (what it is, long name); the first one is
         the name of an Estimate.
     arguments : dict
-        From arguments to what they are.
+        From arguments to what they are: powers, or `OF_TIME`.
     required : tuple of str
         Arguments that must be given.
     sampled : bool
         Whether the function takes a seed and threads.
+    then : str
+        A function with its module that turns what the first one returns into the answer, if any.
     """
 
     title: str
-    solve: Callable
+    function: str
     values: Mapping[str, tuple[Powers, str]]
-    arguments: Mapping[str, Powers] = field(default_factory=dict)
+    arguments: Mapping[str, Powers | str] = field(default_factory=dict)
     required: tuple[str, ...] = ()
     sampled: bool = True
+    then: str = ""
+
+    @property
+    def solve(self) -> Callable:
+        """The function."""
+        return _imported(self.function)
+
+    def turned(self, found: Any) -> Any:
+        """Turn what the function returns into the answer."""
+        return _imported(self.then)(found) if self.then else found
+
+    @property
+    def modules(self) -> list[str]:
+        """Modules of the functions."""
+        return [name.rpartition(".")[0] for name in (self.function, self.then) if name]
+
+
+def _imported(name):
+    module, _, function = name.rpartition(".")
+    return getattr(import_module(module), function)
 
 
 QUESTIONS: dict[str, Question] = {
     "asymptotic_variance": Question(
         "Asymptotic variance",
-        asymptotic_variance,
+        "nonsmooth.statistics.asymptotic_variance.asymptotic_variance",
         {"gamma2": ({"g": 2, "time": 1}, "asymptotic variance gamma^2 of the integral of g")},
         {"tol": PLAIN, "method": PLAIN},
     ),
     "mean": Question(
         "Mean",
-        mean,
+        "nonsmooth.statistics.mean.mean",
         {"mean": ({"g": 1}, "stationary mean of g")},
         {"tol": {"g": 1}, "method": PLAIN},
     ),
     "variance": Question(
         "Variance at finite times",
-        variance,
+        "nonsmooth.statistics.variance.variance",
         {
             "v": ({"g": 2, "time": 2}, "variance of the integral of g"),
             "w": (INTEGRAL, "mean of the integral of g - E g"),
@@ -107,7 +146,7 @@ QUESTIONS: dict[str, Question] = {
     ),
     "invariant_density": Question(
         "Invariant densities",
-        invariant_density,
+        "nonsmooth.statistics.invariant_density.invariant_density",
         {
             f"density_{'_'.join(names)}": (
                 {base: -power for base, power in powers.items()},
@@ -126,35 +165,53 @@ QUESTIONS: dict[str, Question] = {
     ),
     "spectral_gap": Question(
         "Spectral gap",
-        spectral_gap,
-        {"gap": ({"time": -1}, "rate at which correlations decay")},
+        "nonsmooth.statistics.spectral_gap.spectral_gap",
+        {"gap": (RATE, "rate at which correlations decay")},
         {"tol": PLAIN},
         sampled=False,
     ),
     "extrapolation_length": Question(
         "Extrapolation length",
-        extrapolation_length,
+        "nonsmooth.boundary_layer.extrapolation_length.extrapolation_length",
         {"kappa": (INTEGRAL, "distance of the Brownian threshold beyond that of the scene")},
         {"tol": INTEGRAL, "side": PLAIN},
     ),
     "crossing_probability": Question(
         "Probability of crossing",
-        crossing_probability,
+        "nonsmooth.crossing.probability.crossing_probability",
         {
             "probability": (PLAIN, "probability that the integral of g has left the interval"),
             "lower": (PLAIN, "the probability is above"),
             "upper": (PLAIN, "the probability is below"),
             "horizon": (TIME, "time"),
-            "threshold": (INTEGRAL, "threshold"),
-            "threshold_lower": (INTEGRAL, "lower end of the interval"),
-            "threshold_upper": (INTEGRAL, "upper end of the interval"),
+        }
+        | _THRESHOLDS,
+        {"threshold": INTEGRAL, "horizons": TIME} | _CROSSING | _COUNTED,
+        required=("threshold", "horizons"),
+    ),
+    "reliability_index": Question(
+        "Reliability index",
+        "nonsmooth.crossing.probability.crossing_probability",
+        _INDEX | _THRESHOLDS,
+        {"threshold": INTEGRAL, "horizons": TIME} | _CROSSING | _COUNTED,
+        required=("threshold", "horizons"),
+        then="nonsmooth.reliability.index.reliability_index",
+    ),
+    "hazard_rate": Question(
+        "Hazard rate",
+        "nonsmooth.reliability.hazard.hazard_rate",
+        {
+            "hazard_rate": (RATE, "rate at which those cross that have not crossed yet"),
+            "lower": (RATE, "the rate is above"),
+            "upper": (RATE, "the rate is below"),
+            "horizon": (TIME, "time"),
         },
-        {"threshold": INTEGRAL, "horizons": TIME, "precision": PLAIN} | _CROSSING,
+        {"threshold": INTEGRAL, "horizons": TIME} | _CROSSING,
         required=("threshold", "horizons"),
     ),
     "crossing_threshold": Question(
         "Threshold that is crossed with a probability",
-        crossing_threshold,
+        "nonsmooth.reliability.quantiles.crossing_threshold",
         {
             "threshold": (INTEGRAL, "threshold of the integral of g"),
             "lower": (INTEGRAL, "the threshold is above"),
@@ -167,7 +224,7 @@ QUESTIONS: dict[str, Question] = {
     ),
     "failure_time": Question(
         "Time by which a threshold is crossed with a probability",
-        failure_time,
+        "nonsmooth.reliability.quantiles.failure_time",
         {
             "time": (TIME, "time by which the integral of g has left the interval"),
             "lower": (TIME, "the time is above"),
@@ -179,7 +236,7 @@ QUESTIONS: dict[str, Question] = {
     ),
     "mean_time_to_failure": Question(
         "Mean time to failure",
-        mean_time_to_failure,
+        "nonsmooth.reliability.mean_time.mean_time_to_failure",
         {"time": (TIME, "mean time at which the integral of g leaves the interval")},
         {"threshold": INTEGRAL}
         | {name: kind for name, kind in _CROSSING.items() if name != "order"},
@@ -187,7 +244,7 @@ QUESTIONS: dict[str, Question] = {
     ),
     "asymptotic_variance_sensitivity": Question(
         "Derivative of the asymptotic variance",
-        asymptotic_variance_sensitivity,
+        "nonsmooth.sensitivity.gamma2.asymptotic_variance_sensitivity",
         {"derivative": ({"g": 2, "time": 1}, "derivative of gamma^2 by the parameter")},
         {"parameter": PLAIN, "tol": PLAIN},
         required=("parameter",),
@@ -195,7 +252,7 @@ QUESTIONS: dict[str, Question] = {
     ),
     "crossing_sensitivity": Question(
         "Derivative of the probability of crossing",
-        crossing_sensitivity,
+        "nonsmooth.sensitivity.crossing.crossing_sensitivity",
         {
             "derivative": ({"parameter": -1}, "derivative of the probability by the parameter"),
             "horizon": (TIME, "time"),
@@ -212,23 +269,22 @@ QUESTIONS: dict[str, Question] = {
     ),
     "state_crossing_probability": Question(
         "Probability that the state crosses",
-        state_crossing_probability,
+        "nonsmooth.crossing.state.crossing.state_crossing_probability",
         {
             "probability": (PLAIN, "probability that the variable has left the interval"),
             "lower": (PLAIN, "the probability is above"),
             "upper": (PLAIN, "the probability is below"),
             "horizon": (TIME, "time"),
         },
-        {
-            "variable": PLAIN,
-            "threshold": VARIABLE,
-            "horizons": TIME,
-            "method": PLAIN,
-            "tol": PLAIN,
-            "step": TIME,
-            "paths": PLAIN,
-            "precision": PLAIN,
-        },
+        _STATE | _COUNTED,
         required=("variable", "threshold", "horizons"),
+    ),
+    "state_reliability_index": Question(
+        "Reliability index of the state",
+        "nonsmooth.crossing.state.crossing.state_crossing_probability",
+        _INDEX,
+        _STATE | _COUNTED,
+        required=("variable", "threshold", "horizons"),
+        then="nonsmooth.reliability.index.reliability_index",
     ),
 }

@@ -139,7 +139,12 @@ def _numbers(data, asked):
     return [
         (
             data[name].attrs["long_name"],
-            spelt(float(data[name]), float(data[f"{name}_error"]), data[name].attrs["units"]),
+            spelt(
+                float(data[name]),
+                float(data[f"{name}_error"]),
+                data[name].attrs["units"],
+                tuple(map(float, figures.limits(data, name))),
+            ),
         )
         for name in asked.values
         if name in data.data_vars and data[name].ndim == 0
@@ -158,9 +163,13 @@ def _table(data: xr.Dataset, asked):
     over = data[data[names[0]].dims[-1]]
     columns, head = [], [_headed(over.name, over)]
     for name in names:
-        value, error = (np.atleast_2d(data[key].values) for key in (name, f"{name}_error"))
+        shown = data[name], data[f"{name}_error"], *figures.limits(data, name)
+        curves = (np.atleast_2d(part.values) for part in shown)
         head += figures.levels(data, name) or [_headed(name, data[name])]
-        columns += [list(map(spelt, *pair)) for pair in zip(value, error, strict=True)]
+        columns += [
+            [spelt(v, e, limits=(low, high)) for v, e, low, high in zip(*curve, strict=True)]
+            for curve in zip(*curves, strict=True)
+        ]
     rows = [[f"{float(over[k]):.6g}", *(c[k] for c in columns)] for k in range(over.size)]
     return {"head": head, "rows": rows}
 

@@ -50,12 +50,13 @@ def survey(study: Study, name: str, folder: Path, timings: Path) -> dict[str, An
     shown = [key for key in asked.values if key in found and f"{key}_error" in found]
     values = {key: _last(found[key]) for key in shown}
     errors = {key: _last(found[f"{key}_error"]) for key in shown}
+    limits = {key: [_last(end) for end in figures.limits(found, key)] for key in shown}
     return {
         "name": name,
         "title": asked.title,
         "asked": told(question),
         "figures": [_map(study, found[key], values[key]) for key in shown if study.axes],
-        "table": _extremes(list(study.scenes), values, errors),
+        "table": _extremes(list(study.scenes), values, errors, limits),
         "method": found[shown[0]].attrs["method"],
         "total": total,
         "each": None if total is None else total / len(study.scenes),
@@ -76,7 +77,7 @@ def _last(variable):
 
 
 def _relative(value, error):
-    known = value.values != 0
+    known = (value.values != 0) & np.isfinite(value.values)
     return float(np.max(error.values[known] / np.abs(value.values[known]), initial=0.0))
 
 
@@ -99,7 +100,7 @@ def _numbers(name, values):
         return list(range(len(values)))
 
 
-def _extremes(names, values, errors):
+def _extremes(names, values, errors, limits):
     """Table the scenes with the smallest and the largest values, or all if they are few."""
     rows = []
     for key, value in values.items():
@@ -107,6 +108,8 @@ def _extremes(names, values, errors):
         picked = order if len(order) <= SHOWN else [*order[:3], *order[-3:]]
         unit = value.attrs["units"]
         rows += [
-            [names[k], key, spelt(float(value[k]), float(errors[key][k]), unit)] for k in picked
-        ]
+            [names[k], key.replace("_", " "), spelt(float(value[k]), float(errors[key][k]), unit,
+             tuple(float(end[k]) for end in limits[key]))]
+            for k in picked
+        ]  # fmt: skip
     return {"head": ["scene", "value of", "value"], "rows": rows}

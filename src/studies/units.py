@@ -8,8 +8,10 @@ from functools import cache
 from typing import Any
 
 import pint
+import sympy
 
 from nonsmooth.dimensions import Scales
+from nonsmooth.scenes.formulas import parse
 from reproduction.errors import ConfigError
 
 # powers of the base quantities, as in {"length": 1, "time": -1} for a velocity
@@ -120,6 +122,18 @@ class Units:
             return value
         return in_si(value, _in_si_units(powers)) / Units(self.scales).factor(powers)
 
+    def formula_of_time(self, text: str) -> str:
+        """Write a formula in t, in the user's unit of time, as one in the scene's.
+
+        Raises
+        ------
+        ExpressionError
+            If it cannot be read.
+        """
+        parse(text, (sympy.Symbol("t", real=True),))
+        factor = self.factor({"time": 1})
+        return text if factor == 1 else re.sub(r"\bt\b", f"({factor!r}*t)", text)
+
     def _name(self, base):
         return self.names.get(base, BASE[base])
 
@@ -147,7 +161,12 @@ def in_figures(unit: str) -> str:
     return "" if unit == "1" else re.sub(r"([A-Za-z]+)(-?\d+)", r"\1$^{\2}$", unit)
 
 
-def spelt(value: float, error: float, unit: str = "1") -> str:
+def spelt(
+    value: float,
+    error: float,
+    unit: str = "1",
+    limits: tuple[float, float] = (-math.inf, math.inf),
+) -> str:
     """Spell a number with its error, to two digits of the error: 200.5 ± 2.6 mm² s⁻¹.
 
     Parameters
@@ -155,6 +174,8 @@ def spelt(value: float, error: float, unit: str = "1") -> str:
     value, error : float
     unit : str
         As the CF conventions have it.
+    limits : (float, float)
+        Between which it is; they are spelt where the error is infinite.
 
     Returns
     -------
@@ -162,6 +183,11 @@ def spelt(value: float, error: float, unit: str = "1") -> str:
     """
     unit = pretty(unit)
     tail = f" {unit}" if unit else ""
+    if math.isinf(error):
+        low, high = (f"{limit:.3g}{tail}" for limit in limits)
+        if math.isinf(limits[1]):
+            return "unknown" if math.isinf(limits[0]) else f"≥ {low}"
+        return f"≤ {high}" if math.isinf(limits[0]) else f"{limits[0]:.3g} to {high}"
     if error == 0:
         return f"{value:.6g}{tail}" + (" (exact)" if value == 0 else "")
     decimals = 1 - math.floor(math.log10(error))

@@ -1,10 +1,10 @@
-"""Run the workflow at reduced sizes here and through Slurm, and compare every byte.
+"""Run the workflow and a study at reduced sizes here and through Slurm, and compare every byte.
 
 `make test-slurm` runs this. It uses the machine's Slurm or starts one of a single node; a running
 job is cancelled, which must be tried again. Printed are how many jobs there were of each kind and
 how many files are equal; the exit code is 0 if all are.
 
-`python -m tests.slurm.trial figure_2a` does so for some targets only.
+`python -m tests.slurm.trial figure_2a` does so for some targets only; `studies` is the study alone.
 """
 
 import os
@@ -22,7 +22,8 @@ from tests.support import ROOT, copy_repository
 # in the repository, whose file system the nodes of a cluster share
 FOLDER = ROOT / "results" / "slurm"
 RESULTS = Path("results", "smoke")
-SNAKEMAKE = [sys.executable, "-m", "snakemake", "--configfile", "config/smoke.yaml"]
+STUDIES = ROOT / "tests" / "slurm" / "studies.yaml"
+SNAKEMAKE = [sys.executable, "-m", "snakemake", "--configfile", "config/smoke.yaml", str(STUDIES)]
 LOCAL = ["--cores", str(os.cpu_count())]
 SLURM = ["--workflow-profile", "workflow/profiles/slurm"]
 SLURM += ["--slurm-init-seconds-before-status-checks", "3"]
@@ -103,12 +104,17 @@ def outcome(log, cancelled):
 
 
 def difference(first, second):
-    """List the files of two folders that are not in both or not equal, and count the equal ones."""
+    """List the files of two folders that are not in both or not equal, and count the equal ones.
+
+    Logs and benchmarks are apart, and the reports of studies, which tell the seconds of their jobs.
+    """
     files = {
         path.relative_to(folder)
         for folder in (first, second)
         for path in folder.rglob("*")
-        if path.is_file() and path.relative_to(folder).parts[0] not in {"logs", "benchmarks"}
+        if path.is_file()
+        and path.relative_to(folder).parts[0] not in {"logs", "benchmarks"}
+        and not path.relative_to(folder).match("studies/*/report.*")
     }
     both = {name for name in files if (first / name).exists() and (second / name).exists()}
     equal = {name for name in both if (first / name).read_bytes() == (second / name).read_bytes()}
@@ -143,4 +149,4 @@ def main(targets):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or ["all"])
+    main(sys.argv[1:] or ["all", "studies"])

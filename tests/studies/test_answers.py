@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
 from nonsmooth.scenes.noises import White
 from nonsmooth.scenes.scene import Scene
@@ -110,6 +111,18 @@ def test_a_batch_computes_what_is_new_alone(tmp_path, monkeypatch):
     [
         ({"ask": "mean_time_to_failure", "threshold": "2 m"}, "time", "s"),
         ({"ask": "asymptotic_variance_sensitivity", "parameter": "n"}, "derivative", "mm2 s-1"),
+        ({"ask": "hazard_rate", "threshold": "2 m", "horizons": ["9 s"]}, "hazard_rate", "s-1"),
+        (
+            {"ask": "reliability_index", "threshold": ["1 m", "2 m"], "horizons": ["9 s"]},
+            "reliability_index",
+            "1",
+        ),
+        (
+            {"ask": "state_reliability_index", "variable": "y", "threshold": "2 m/s"}
+            | {"horizons": ["2 s"]},
+            "reliability_index",
+            "1",
+        ),
         ({"ask": "failure_time", "threshold": "2 m", "method": "asymptotic"}, "time", "s"),
         (
             {"ask": "state_crossing_probability", "variable": "y", "threshold": "2 m/s"}
@@ -125,6 +138,64 @@ def test_units_of_answers(question, name, unit):
     assert found[name].attrs["units"] == unit
     assert found[f"{name}_error"].attrs["units"] == unit
     assert np.all(np.isfinite(found[name]))
+
+
+def test_indices_are_those_of_the_probabilities():
+    """Of each threshold; the threshold keeps its unit."""
+    asked = {"threshold": ["1 m", "2 m"], "horizons": ["9 s", "12 s"]}
+    crossing = answer(STRUCTURE, {"ask": "crossing_probability"} | asked, {"length": "mm"}, 0)
+    found = answer(STRUCTURE, {"ask": "reliability_index"} | asked, {"length": "mm"}, 0)
+    assert found["reliability_index"].values == pytest.approx(-ndtri(crossing["probability"]))
+    assert found["threshold"].values.tolist() == [1000, 2000]
+    assert found["threshold"].attrs["units"] == "mm"
+
+
+NEVER = {"ask": "reliability_index", "threshold": "40 m", "horizons": ["2 s"], "paths": 500}
+
+
+def test_what_no_path_tells_is_infinite_and_says_so(tmp_path):
+    """Of 500 paths none crosses: beta is above a limit; alone and in a batch it can be kept."""
+    found = answer(STRUCTURE, NEVER, {}, 0)
+    assert np.isinf(found["reliability_index_error"]).all()
+    assert found["reliability_index_error"].attrs["infinite"]
+    # W < -log(0.025) / 500 nearly with 97.5 %
+    assert float(found["lower"][0]) == pytest.approx(-ndtri(-np.log(0.025) / 500), abs=0.01)
+    artifact.write(found, tmp_path / "never.nc", "test")
+    shaken = STRUCTURE | {"ground_spectral_density": "20 m^2/s^3"}
+    both = {"strong": shaken, "weak": STRUCTURE}
+    merged = answer_batch(both, NEVER, {}, 0, tmp_path / "store", [])
+    assert np.isfinite(merged["reliability_index"].values).tolist() == [[True], [False]]
+    artifact.write(merged, tmp_path / "both.nc", "test")
+
+
+def test_an_envelope_is_in_the_users_time():
+    """A loop in SI units agrees: 10 kg that slip at 5 N, with the noise exp(-t / 1 s) sqrt(2 pi S).
+
+    The unit of time of the scene is 2.5 s; the same formula in that time is far off.
+    """
+    paths, steps, end, sigmas = 20_000, 500, 5.0, 4.5  # one false alarm in 150,000
+    # n = 10 times the slip force at the unit of velocity
+    slope = 10 * 5 / (5 / 10 * 2 * math.pi * 0.1 * (10 / 5) ** 2)
+    dt, noise = end / steps, np.random.default_rng(3)
+    v, z, crossed = np.zeros(paths), np.zeros(paths), np.zeros(paths, bool)
+    for k in range(steps):
+        friction = np.clip(slope * v, -5, 5)
+        spread = math.exp(-(k + 0.5) * dt) * math.sqrt(2 * math.pi * 0.1 * dt)
+        moved = v - dt * (3 * v + friction) / 10 + spread * noise.standard_normal(paths)
+        z += dt * (v + moved) / 2
+        v = moved
+        crossed |= np.abs(z) >= 0.25
+    asked = {"ask": "crossing_probability", "threshold": "250 mm", "horizons": ["5 s"]}
+    asked |= {"tol": 0.02}
+    found = answer(STRUCTURE, asked | {"envelope": "exp(-t)"}, {"length": "mm"}, 1)
+    W = crossed.mean()
+    error = math.hypot(math.sqrt(W * (1 - W) / paths), float(found["standard_error"][0]))
+    allowed = sigmas * error + 2 * dt  # the loop's scheme is of the order 1
+    assert abs(W - float(found["probability"][0])) < allowed
+    wrong = answer(STRUCTURE, asked | {"envelope": "exp(-t/2.513)"}, {"length": "mm"}, 1)
+    assert abs(W - float(wrong["probability"][0])) > 3 * allowed
+    minutes = answer(STRUCTURE, asked | {"envelope": "exp(-60*t)"}, {"time": "min"}, 1)
+    assert minutes["probability"].values == pytest.approx(found["probability"].values, abs=1e-12)
 
 
 @pytest.mark.slow

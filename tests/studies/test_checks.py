@@ -76,6 +76,12 @@ def test_bad_study(keys, value, message):
         (["scenes", "weak", "slip_force"], None, "'slip_force' is missing: the model 'friction'"),
         (["questions", "crossing", "threshold"], "5 s", "'questions.crossing'"),
         (["questions", "crossing", "threshold"], 5, "has no unit; write such as '2 m'"),
+        (
+            ["questions", "crossing", "envelope"],
+            "exp(-2t)",
+            "'questions.crossing', of 'scenes.weak",
+        ),
+        (["questions", "crossing", "envelope"], 2, "cannot read the formula 2: it is not text"),
     ],
 )
 def test_bad_study_in_si_units(keys, value, message):

@@ -3,8 +3,10 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import xarray as xr
 
-from studies.figures import maps
+from studies.figures import maps, of_answer
+from studies.questions import QUESTIONS
 
 AXES = {"a": [1, 2], "b": [1, 2, 3], "c": [1, 2, 3, 4], "d": ["1 mm", "2 mm"]}
 
@@ -33,4 +35,36 @@ def test_one_parameter_is_a_line():
     """Value against parameter."""
     figure = maps(np.array([1.0, 2.0]), {"n": [1, 2]}, "value", {"n": [1.0, 2.0]})
     assert figure.axes[0].lines[0].get_ydata().tolist() == [1.0, 2.0]
+    plt.close(figure)
+
+
+def test_unknown_values_leave_their_cells_blank():
+    """An infinite one does not spoil the colors of the others."""
+    numbers = {"a": [1, 2], "b": [1, 2, 3]}
+    values = np.array([1.0, 2.0, np.inf, 3.0, 4.0, 5.0])
+    figure = maps(values, {"a": [1, 2], "b": [1, 2, 3]}, "value", numbers)
+    mesh = figure.axes[0].collections[0]
+    assert np.ma.masked_invalid(mesh.get_array()).mask.sum() == 1
+    assert (mesh.norm.vmin, mesh.norm.vmax) == (1.0, 5.0)
+    plt.close(figure)
+
+
+def test_a_band_without_an_end_fills_the_figure():
+    """From the lower limit to the top, also where there is no value."""
+    values = {
+        "reliability_index": [np.inf, 2.0],
+        "reliability_index_error": [np.inf, 0.5],
+        "lower": [3.0, 1.6],
+        "upper": [np.inf, 2.7],
+    }
+    described = {"units": "1", "long_name": "index"}
+    data = xr.Dataset(
+        {name: ("horizon", part, described) for name, part in values.items()},
+        {"horizon": ("horizon", [1.0, 2.0], {"units": "s", "long_name": "time"})},
+    )
+    (figure,) = of_answer(data, QUESTIONS["reliability_index"])
+    (axis,) = figure.axes
+    corners = axis.collections[0].get_paths()[0].vertices
+    assert {tuple(corner) for corner in corners} >= {(1.0, 3.0), (1.0, axis.get_ylim()[1])}
+    assert axis.get_ylim()[0] == 0
     plt.close(figure)

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from nonsmooth.dimensions import Scales
+from nonsmooth.errors import ExpressionError
 from reproduction.errors import ConfigError
 from studies.units import Units, in_si, spelt
 
@@ -78,3 +79,29 @@ def test_dimensionless_numbers_stay():
 def test_is_spelt_to_two_digits_of_its_error(value, error, text):
     """As reports have it."""
     assert spelt(value, error, "mm2 s-1") == text
+
+
+@pytest.mark.parametrize(
+    ("limits", "text"),
+    [
+        ((3.1, math.inf), "≥ 3.1 s"),
+        ((-math.inf, -2.0), "≤ -2 s"),
+        ((3.1, 4.2), "3.1 to 4.2 s"),
+        ((-math.inf, math.inf), "unknown"),
+    ],
+)
+def test_without_an_error_the_limits_are_spelt(limits, text):
+    """As for the index of what no path has crossed."""
+    assert spelt(math.inf, math.inf, "s", limits) == text
+
+
+def test_a_formula_of_time():
+    """Its t is in the user's time: of ms, 100 make the unit of the scene's."""
+    units = Units(Scales(length=0.004, time=0.1, force=700.0), {"time": "ms"})
+    t = 0.7
+    scaled = units.formula_of_time("t/50*exp(1 - t/50) + sqrt(t)")
+    value = eval(scaled, {"t": t, "exp": math.exp, "sqrt": math.sqrt})  # ours, of the line above
+    assert value == pytest.approx(70 / 50 * math.exp(1 - 70 / 50) + math.sqrt(70))
+    assert Units().formula_of_time("exp(-t)") == "exp(-t)"
+    with pytest.raises(ExpressionError, match="cannot read the formula '2t'"):
+        units.formula_of_time("2t")

@@ -7,6 +7,7 @@ import pytest
 import yaml
 
 from reproduction.jobs import artifact
+from support import ROOT
 
 RESULTS = "results/smoke/studies/mine"
 STUDY = {
@@ -77,6 +78,15 @@ def test_a_study_becomes_a_report(repository):
     strong = {"slip_force": "8 N"}
     changed = STUDY | {"scenes": STUDY["scenes"] | {"strong": strong}}
     assert jobs(repository, changed) == {"study_answer": 3, "study_report": 1}
+    # an answer depends on the modules of its question alone
+    for module, rerun in (("reliability/hazard", 0), ("crossing/tuning", 2)):
+        with open(repository.folder / f"src/nonsmooth/{module}.py", "a") as file:
+            file.write("# changed\n")
+        wanted = {"study_answer": rerun, "study_report": 1} if rerun else {}
+        assert jobs(repository, STUDY) == wanted
+    (repository.folder / "src/nonsmooth/crossing/tuning.py").write_bytes(
+        (ROOT / "src/nonsmooth/crossing/tuning.py").read_bytes()
+    )
     asked = STUDY["questions"] | {"bias": {"ask": "mean"}}
     assert jobs(repository, STUDY | {"questions": asked}) == {"study_answer": 2, "study_report": 1}
 

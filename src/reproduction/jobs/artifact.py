@@ -73,7 +73,8 @@ def write(dataset: xr.Dataset, path: str | Path, history: str) -> None:
     Raises
     ------
     ArtifactError
-        If a variable is not described or not finite, or the file cannot be written.
+        If a variable is not described, or not finite although no attribute `infinite` of it says
+        what that means, or if the file cannot be written.
     """
     dataset = dataset[sorted(map(str, dataset.data_vars))].copy()
     flaw = _flaw(dataset)
@@ -154,7 +155,8 @@ def _identity(path):
 def _flaw(dataset):
     """Say what an artifact must not have, or nothing."""
     for name, variable in dataset.variables.items():
-        bad = np.isnan if name in dataset.coords else lambda values: ~np.isfinite(values)
+        infinite = name in dataset.coords or "infinite" in variable.attrs
+        bad = np.isnan if infinite else lambda values: ~np.isfinite(values)
         if not {"long_name", "units"} <= variable.attrs.keys():
             return f"variable {name!r} has no long_name or units"
         if variable.dtype.kind == "f" and np.any(bad(variable.values)):

@@ -13,6 +13,6 @@ if __name__ == "__main__":
         answer_batch,
         snakemake,
         store=Path(snakemake.output[0]).parents[2] / "store",
-        sources=sorted(snakemake.input.modules),
+        sources=sorted({*snakemake.input.modules, *snakemake.input.asked}),
         threads=snakemake.threads,
     )
