@@ -1,6 +1,6 @@
 """Figures of answers: curves with their error bands, densities, maps over a sweep."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from typing import Any
 
@@ -67,7 +67,7 @@ def _curves(data, name):
         curve, color = curves.isel({several: k}), COLORS[k % len(COLORS)]
         low, high = (np.clip(end, bottom, top) for end in _band(curve, name))
         axis.fill_between(over, low, high, color=color, alpha=0.3, linewidth=0)
-        label = _level(curve, several) if first else None
+        label = level(curve, several) if first else None
         axis.plot(over, curve[name], color=color, marker="o", markersize=3, label=label)
     axis.set_xlim(0, None)
     axis.set_ylabel(
@@ -99,10 +99,13 @@ def levels(data: xr.Dataset, name: str) -> list[str]:
     if data[name].ndim == 1:
         return []
     several = data[name].dims[0]
-    return [_level(data.isel({several: k}), several, pretty) for k in range(data.sizes[several])]
+    return [level(data.isel({several: k}), several, pretty) for k in range(data.sizes[several])]
 
 
-def _level(curve, several, spell=in_figures):
+def level(
+    curve: xr.Dataset | xr.DataArray, several: str, spell: Callable[[str], str] = in_figures
+) -> str:
+    """Spell the place of a curve on a dimension: its coordinate, or a threshold's two ends."""
     if several in curve.coords:
         return f"{float(curve[several]):.6g} {spell(curve[several].attrs['units'])}".rstrip()
     ends = (f"{float(curve[f'{several}_{end}']):.6g}" for end in ("lower", "upper"))

@@ -84,9 +84,8 @@ def _relative(value, error):
 def _map(study, variable, values):
     title = variable.attrs["long_name"]
     for dim in variable.dims[1:]:
-        over = variable[dim]
-        title += f", at {dim} = {float(over[-1]):.6g} {pretty(over.attrs['units'])}".rstrip()
-    label = f"{variable.name}, {in_figures(variable.attrs['units'])}".rstrip(", ")
+        title += f", at {dim} = {figures.level(values, dim, pretty)}"
+    label = f"{variable.name.replace('_', ' ')}, {in_figures(variable.attrs['units'])}".rstrip(", ")
     numbers = {name: _numbers(name, values) for name, values in study.axes.items()}
     figure = figures.maps(values.values, study.axes, label, numbers)
     return {"title": title, "svg": drawing.as_svg(figure)}

@@ -146,7 +146,7 @@ def test_indices_are_those_of_the_probabilities():
     crossing = answer(STRUCTURE, {"ask": "crossing_probability"} | asked, {"length": "mm"}, 0)
     found = answer(STRUCTURE, {"ask": "reliability_index"} | asked, {"length": "mm"}, 0)
     assert found["reliability_index"].values == pytest.approx(-ndtri(crossing["probability"]))
-    assert found["threshold"].values.tolist() == [1000, 2000]
+    assert found["threshold"].values == pytest.approx([1000, 2000])
     assert found["threshold"].attrs["units"] == "mm"
 
 
@@ -158,8 +158,9 @@ def test_what_no_path_tells_is_infinite_and_says_so(tmp_path):
     found = answer(STRUCTURE, NEVER, {}, 0)
     assert np.isinf(found["reliability_index_error"]).all()
     assert found["reliability_index_error"].attrs["infinite"]
-    # W < -log(0.025) / 500 nearly with 97.5 %
-    assert float(found["lower"][0]) == pytest.approx(-ndtri(-np.log(0.025) / 500), abs=0.01)
+    # counting alone tells with 97.5 % that W is below; the limit has the bias of the step, too
+    counted = -np.log(0.025) / 500
+    assert -ndtri(2 * counted) < float(found["lower"][0]) < -ndtri(counted)
     artifact.write(found, tmp_path / "never.nc", "test")
     shaken = STRUCTURE | {"ground_spectral_density": "20 m^2/s^3"}
     both = {"strong": shaken, "weak": STRUCTURE}

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from studies.figures import maps, of_answer
+from studies.figures import level, levels, maps, of_answer
 from studies.questions import QUESTIONS
 
 AXES = {"a": [1, 2], "b": [1, 2, 3], "c": [1, 2, 3, 4], "d": ["1 mm", "2 mm"]}
@@ -68,3 +68,15 @@ def test_a_band_without_an_end_fills_the_figure():
     assert {tuple(corner) for corner in corners} >= {(1.0, 3.0), (1.0, axis.get_ylim()[1])}
     assert axis.get_ylim()[0] == 0
     plt.close(figure)
+
+
+def test_a_pair_of_levels_is_spelt_with_its_unit():
+    """Of two thresholds of two ends each."""
+    described = {"units": "mm", "long_name": "end"}
+    data = xr.Dataset(
+        {"probability": (("threshold", "horizon"), [[0.1], [0.2]])},
+        {"threshold_lower": ("threshold", [-1.0, -2.0], described)}
+        | {"threshold_upper": ("threshold", [3.0, np.inf], described)},
+    )
+    assert levels(data, "probability") == ["-1, 3 mm", "-2, inf mm"]
+    assert level(data["probability"].isel(threshold=-1), "threshold") == "-2, inf mm"

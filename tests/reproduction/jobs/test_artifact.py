@@ -65,6 +65,21 @@ def test_values_that_are_not_finite_are_refused(tmp_path, bad):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_values_may_be_infinite_where_that_is_explained(tmp_path, bad):
+    """By an attribute, which is kept; NaN is nothing."""
+    data = example((1.0, bad))
+    data["q"].attrs["infinite"] = "where nothing is known"
+    if np.isnan(bad):
+        with pytest.raises(ArtifactError, match="'q' is not finite"):
+            artifact.write(data, tmp_path / "x.nc", "")
+        return
+    artifact.write(data, tmp_path / "x.nc", "")
+    found = artifact.read(tmp_path / "x.nc")["q"]
+    assert found.values.tolist() == [1.0, np.inf]
+    assert found.attrs["infinite"] == "where nothing is known"
+
+
 def test_coordinates_may_be_infinite_but_not_undefined(tmp_path):
     """N = inf is the limit; NaN is nothing."""
     for value in (np.inf, np.nan):
