@@ -138,7 +138,7 @@ def _numbers(data, asked):
     """Spell values without dimensions, each with its error."""
     return [
         (
-            data[name].attrs["long_name"],
+            data[name].attrs["long_name"].replace("gamma^2", "γ²"),
             spelt(
                 float(data[name]),
                 float(data[f"{name}_error"]),
@@ -175,8 +175,8 @@ def _table(data: xr.Dataset, asked):
 
 
 def _headed(name, variable):
-    unit = pretty(variable.attrs["units"])
-    return f"{name}, {unit}" if unit else str(name)
+    name, unit = str(name).replace("_", " "), pretty(variable.attrs["units"])
+    return f"{name}, {unit}" if unit else name
 
 
 def as_html(content: Mapping[str, Any], template: str | Path) -> bytes:
