@@ -29,10 +29,11 @@ short = ns.crossing_probability(
     scene, rims / length, seconds / time, envelope=f"min(1, exp(2 - {time / 4}*t))", seed=1
 )
 
-for label, style, found in (("lasting", "-", steady), ("ends after 8 s", "--", short)):
-    beta = ns.reliability_index(found)
-    for rim, curve in zip(rims, beta.transpose("threshold", ...)["reliability_index"], strict=True):
-        plt.plot(seconds, curve, f"o{style}", label=f"{1000 * rim:.0f} mm, {label}")
+for label, style, found in (("lasting", "-", steady), ("dying out after 8 s", "--", short)):
+    for k, rim in enumerate(rims):
+        curve = ns.reliability_index(found).isel(threshold=k)
+        plt.fill_between(seconds, curve["lower"], curve["upper"].clip(max=4), alpha=0.2)
+        plt.plot(seconds, curve["reliability_index"], f"o{style}", label=f"{rim:.2f} m, {label}")
 plt.xlabel("time in s")
 plt.ylabel(r"reliability index $\beta$")
 plt.legend()
