@@ -46,12 +46,13 @@ def crossing_sensitivity(
         levels both move outwards by the same distance.
     method : {"deterministic", "monte_carlo"}, optional
         ``"deterministic"`` takes differences of high order of solved probabilities. It is chosen
-        for one state variable, ``"monte_carlo"`` for all others and if `tol` is so loose that it is
+        for one state variable; two, where `crossing_probability` solves them, take six solutions,
+        minutes. ``"monte_carlo"`` is chosen for all others and if `tol` is so loose that it is
         faster; it takes differences of paths that share their noise.
     tol : float, optional
         Error wanted of the derivative times the parameter (for a pair of levels, times the distance
-        of the nearer one). Unless given, 1e-4 for ``"deterministic"`` and 3e-2 for
-        ``"monte_carlo"``.
+        of the nearer one). Unless given, 1e-4 for ``"deterministic"`` or 1e-2 with two variables,
+        and 3e-2 for ``"monte_carlo"``.
     seed : int or tuple
     threads : int, optional
         All cores unless given.
@@ -85,7 +86,8 @@ def crossing_sensitivity(
 
     def solve():
         if method == "deterministic":
-            accuracy = settings.solved if wanted is None else wanted
+            usual = settings.solved[min(scene.dimension, len(settings.solved)) - 1]
+            accuracy = usual if wanted is None else wanted
             return differences.logarithmic_derivative(question, parameter, accuracy)
         accuracy = settings.sampled if wanted is None else wanted
         return sampled.logarithmic_derivative(question, parameter, accuracy, seed, threads)

@@ -45,6 +45,25 @@ def test_scale_of_the_limit_theorem():
 
 
 @pytest.mark.slow
+def test_the_scale_is_a_threshold_and_a_time():
+    """W depends on sqrt(p) b and p T: its derivative by p follows from those by b and by T.
+
+    That by T is the hazard rate times the survival probability. The errors are bounds.
+    """
+    scene, b, p = FRICTION.with_n(3), 0.6, 2.0
+    by_p, by_b = (
+        ns.crossing_sensitivity(scene, b, HORIZONS, name, p=p, method="deterministic")
+        for name in ("p", "threshold")
+    )
+    h = ns.hazard_rate(scene, b, HORIZONS, p=p, method="deterministic")
+    survival = ns.crossing_probability(scene, b, HORIZONS, p=p, method="deterministic")["survival"]
+    expected = (b / 2 * by_b["derivative"] + HORIZONS * survival * h["hazard_rate"]) / p
+    error = (b / 2 * by_b["derivative_error"] + HORIZONS * survival * h["hazard_rate_error"]) / p
+    assert np.all(error < 0.01 * np.abs(expected)), "the comparison would see little"
+    assert np.all(np.abs(by_p["derivative"] - expected) <= by_p["derivative_error"] + error)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("parameter", ["threshold", "p", "damping", "n", "sigma"])
 def test_loose_tolerances_hold(parameter):
     """The error that is stated to a loose tolerance contains the value of a tight one."""
@@ -71,6 +90,18 @@ def test_common_noise(parameter):
     )
     error = 5 * run["derivative_error"] + exact["derivative_error"]
     assert np.all(np.abs(run["derivative"] - exact["derivative"]) <= error)
+
+
+@pytest.mark.slow
+def test_two_variables_are_solved_where_that_is_asked_for():
+    """Solutions and paths with common noise agree, within five of the errors of the latter."""
+    scene = ns.Scene("friction", "langevin", n=5)
+    solved = ns.crossing_sensitivity(scene, 1.0, [8, 12], "threshold", method="deterministic")
+    run = ns.crossing_sensitivity(scene, 1.0, [8, 12], "threshold", tol=0.1, seed=1)
+    assert np.all(solved["derivative_error"] <= 1e-2)
+    allowed = 5 * run["derivative_error"] + solved["derivative_error"]
+    assert np.all(np.abs(run["derivative"] - solved["derivative"]) <= allowed)
+    assert np.all(allowed < np.abs(solved["derivative"])), "the comparison would see nothing"
 
 
 def test_more_variables_are_sampled():
