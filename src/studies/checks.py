@@ -6,18 +6,21 @@ import warnings
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import yaml
 
 from nonsmooth.errors import NonsmoothError
+from nonsmooth.paths.absorption.envelope import scales
 from reproduction.configuration.schema import shown, validate
 from reproduction.errors import ConfigError, dotted
 from studies.answers import arguments, meanings
-from studies.questions import QUESTIONS
+from studies.questions import QUESTIONS, TIME
 from studies.scenes import is_structure, scene_of
 from studies.study import Study
 
 SCHEMA = Path(__file__).parents[2] / "workflow" / "schemas" / "study.schema.yaml"
 MOST_SCENES = 100_000
+ENVELOPE_POINTS = 500
 
 
 def require_sound(study: Study) -> None:
@@ -108,10 +111,23 @@ def _check_meaning(study):
             raise _located(study, name, error) from None
         for question_name, question in study.questions.items():
             try:
-                arguments(question, units, meanings(question, parameters))
+                given = arguments(question, units, meanings(question, parameters))
+                _check_envelope(question, given, units)
             except NonsmoothError as error:
                 key = dotted(("questions", question_name))
                 raise ConfigError(f"{key}, of {dotted(('scenes', name))}: {error}") from None
+
+
+def _check_envelope(question, given, units):
+    """Evaluate an envelope at many of the user's times up to the last horizon."""
+    if "envelope" not in question:
+        return
+    try:
+        last = float(np.max(given["horizons"])) * float(given.get("p", 1.0))
+    except (TypeError, ValueError):  # is refused by the question itself
+        return
+    step = last * units.factor(TIME) / ENVELOPE_POINTS
+    scales(question["envelope"], 0.0, step, ENVELOPE_POINTS)
 
 
 def _examples(study):

@@ -81,6 +81,8 @@ def test_bad_study(keys, value, message):
             "exp(-2t)",
             "'questions.crossing', of 'scenes.weak",
         ),
+        # in the user's time: 0 after half of 2 s
+        (["questions", "crossing", "envelope"], "1 - t", "'1 - t' is -0.00"),
         (["questions", "crossing", "envelope"], 2, "cannot read the formula 2: it is not text"),
     ],
 )
