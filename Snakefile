@@ -26,6 +26,7 @@ from workflow.experiment import (
     halving_paths,
     label,
     part,
+    rare,
     shards,
     step_at,
     swept,
@@ -72,6 +73,7 @@ include: "workflow/rules/finite_p.smk"
 include: "workflow/rules/convergence.smk"
 include: "workflow/rules/gamma2.smk"
 include: "workflow/rules/sweep.smk"
+include: "workflow/rules/rare_crossings.smk"
 include: "workflow/rules/theorems.smk"
 include: "workflow/rules/errata.smk"
 include: "workflow/rules/density.smk"

@@ -13,6 +13,15 @@ def swept(config: dict) -> dict[str, dict]:
     return {name: config["sweep"]["scenes"][name] for name in config["sweep"]["simulated"]}
 
 
+def rare(config: dict) -> dict[str, dict]:
+    """Return the parameters and the far thresholds of the scenes of figure 13, by their names."""
+    topic, scenes = config["rare_crossings"], config["sweep"]["scenes"]
+    return {
+        name: {"scene": scenes[name]["scene"], "thresholds": topic["thresholds"][name]}
+        for name in topic["scenes"]
+    }
+
+
 def ergodic_scenes(config: dict) -> dict[str, dict]:
     """Return the parameters of the scenes of table 7b by their names, in the table's order."""
     scenes = config["sweep"]["scenes"]

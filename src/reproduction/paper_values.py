@@ -57,6 +57,7 @@ def paper_values(artifacts: Mapping, settings: Mapping) -> dict:
         "finite_p": finite_p(a["contained"], a["formulas"], s["finite_p"]),
         "trajectories": trajectories(s["trajectories"]),
         "sweep": every_scene(a["limit"], s["scenes"]),
+        "rare_crossings": rare_crossings(a["rare"], s["rare_crossings"]),
         "density": density(s["density"]),
         "theorems": theorems(a["drift_condition"], s["theorems"]),
         "ergodicity": ergodicity(
@@ -224,6 +225,25 @@ def every_scene(limit: xr.Dataset, section: Mapping) -> dict:
         ),
         "allowed": _short(limit["allowed"]),
         "standard_error": f"{0.5 / section['paths'] ** 0.5 + 5e-5:.4f}",  # rounded up
+    }
+
+
+def rare_crossings(runs: list[xr.Dataset], section: Mapping) -> dict:
+    """Return the scale of table 11, its smallest probability and its largest relative error."""
+    relative = max(float((run["probability_error"] / run["probability"]).max()) for run in runs)
+    least = min((run.isel(threshold=-1) for run in runs), key=lambda run: run["probability"])
+    return {
+        "p": _short(section["p"]),
+        "horizon": _short(section["horizon"]),
+        "scenes": str(len(runs)),
+        "paths": _count(max(run["paths"] for run in runs)),
+        "least": Quoted(
+            _power(least["probability"]),
+            least["probability"],
+            least["probability_error"],
+            BOUND,
+        ),
+        "percent": decimal(100 * relative, 0, 0, ERROR),
     }
 
 

@@ -31,6 +31,8 @@ NODE_SECONDS, NODE_BYTES, MARCH_BYTES = 8e-8, 200, 250
 POISSON = {1: (1e-10, 0.5), 2: (1e-6, 3.0), 3: (2e-4, 10.0), 4: (3e-3, 40.0)}
 # of a point of the drift condition: benchmarks/theorems
 POINT_SECONDS, POINT_BYTES = 1.5e-6, 400
+# paths and step of importance sampling, the fits and the halved step included
+RARE_PATHS, RARE_STEP = 40_000, 0.05
 # paths of a block, whose sums are kept for every time and statistic
 BLOCK, SUMS = 1000, 25 * 8
 
@@ -125,6 +127,7 @@ def costs(config: dict) -> Iterator[Cost]:
     yield from _convergence(config["convergence"])
     yield from _gamma2(config["gamma2"], config["sweep"]["scenes"])
     yield from _sweep(config["sweep"])
+    yield from _rare(config["rare_crossings"], config["sweep"]["scenes"])
     yield from _theorems(config["theorems"])
     yield from _densities(config["density"], config["sweep"]["scenes"])
     yield from _limit_theorem(config["limit_theorem"], config["sweep"])
@@ -326,6 +329,20 @@ def _sweep(topic):
         for scene, step in zip(scenes, steps.values(), strict=True)
     )
     yield Cost(sizes, seconds, JOB_BYTES + 64 * max(own["paths"], own["halving_paths"]))
+
+
+def _rare(topic, known):
+    thresholds = {name: len(topic["thresholds"][name]) for name in topic["scenes"]}
+    most = max(thresholds, key=thresholds.get)
+    sizes = _sizes(("rare_crossings",), topic, p=["p"], horizon=["horizon"])
+    sizes["rare_crossings", "thresholds", most] = thresholds[most]
+    seconds = JOB_SECONDS
+    for name, count in thresholds.items():
+        dimension = scene_of(known[name]["scene"]).dimension
+        time = topic["p"] * topic["horizon"]
+        each = 0.5 + _simulated(dimension, RARE_PATHS, time, RARE_STEP)
+        seconds += JOB_SECONDS + count * each
+    yield Cost(sizes, seconds)
 
 
 def _theorems(topic):

@@ -106,9 +106,14 @@ def _check_names(config):
     """Refuse a scene that is not one of the sweep, or not of the kind that its topic needs."""
     known, simulated = list(config["sweep"]["scenes"]), config["sweep"]["simulated"]
     _check_known(config, ("sweep", "simulated"), known)
-    # table 5 and figure 8 compare with the simulations
-    for topic in ("gamma2", "limit_theorem"):
+    # table 5 and figure 8 compare with the simulations, figure 13 with their limits
+    for topic in ("gamma2", "limit_theorem", "rare_crossings"):
         _check_known(config, (topic, "scenes"), simulated, "simulated ")
+    rare = config["rare_crossings"]
+    for name in rare["scenes"]:
+        if name not in rare["thresholds"]:
+            problem = f"has {name!r}, which has no rare_crossings.thresholds; add some"
+            raise _refused(config, ("rare_crossings", "scenes"), problem)
     for key in (
         ("density", "scenes"),
         ("theorems", "ergodicity", "scenes"),
@@ -141,6 +146,7 @@ def _check_increasing(config):
         ("finite_p", "p"),
         ("finite_p", "horizons"),
         *(("rates", "scenes", name, "n") for name in config["rates"]["scenes"]),
+        *(("rare_crossings", "thresholds", name) for name in config["rare_crossings"]["scenes"]),
     ]
     for key in keys:
         numbers = _value(config, key)

@@ -2,11 +2,12 @@
 
 FIGURES = [
     *["figure_1", "figure_2a", "figure_2b", "figure_3", "figure_4", "figure_5", "figure_6"],
-    *["figure_7", "figure_8", "figure_9", "figure_10", "figure_12"],
+    *["figure_7", "figure_8", "figure_9", "figure_10", "figure_12", "figure_13"],
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *["table_7b", "table_9", "table_10", "table_errata", "table_potentials", "table_time_step"],
+    *["table_7b", "table_9", "table_10", "table_11", "table_errata", "table_potentials"],
+    "table_time_step",
 ]
 
 
@@ -30,6 +31,7 @@ rule values:
         contained=rules.check_finite_p.output[0],
         formulas=rules.finite_p_formulas.output[0],
         limit=rules.sweep_limit.output[0],
+        rare=rules.table_11.input.sampled,
         convergence=rules.table_4.input.spectral,
         convergence_check=rules.check_convergence.output[0],
         drift_condition=rules.drift_condition.output[0],
@@ -52,6 +54,7 @@ rule values:
         scheme=config["convergence"]["finite_difference"],
         trajectories=config["trajectories"],
         scenes=config["sweep"],
+        rare_crossings=config["rare_crossings"],
         theorems=config["theorems"],
         density=config["density"],
         limit_theorem=config["limit_theorem"],

@@ -81,14 +81,15 @@ def importance_sampled_crossing(
             f"{quoted(scene.observable)}, so that no formula guides them; use method='monte_carlo'"
         )
     guide = poisson.fitted(scene, coarse_step(scene) / 2, labelled(seed, "importance"))
-    found, missed = [], []
-    for k, levels in enumerate(np.sqrt(p) * thresholds):
-        own = labelled(labelled(seed, "importance"), k)
-        request = _Request(
-            scene, tuple(levels.tolist()), p * horizons, own, threads, tol, step, paths, guide
-        )
-        result, fault = request.answer()
-        found.append(result)
+    found, missed = [{}] * len(thresholds), []
+    led: dict[int, Guide] = {}
+    # from the nearest threshold on, as guides to it lead some way to the next one
+    width = np.where(np.isfinite(thresholds), np.abs(thresholds), 0.0).sum(axis=1)
+    for k in np.argsort(width, kind="stable"):
+        own = labelled(labelled(seed, "importance"), int(k))
+        levels = tuple((np.sqrt(p) * thresholds[k]).tolist())
+        request = _Request(scene, levels, p * horizons, own, threads, tol, step, paths, guide, led)
+        found[k], fault = request.answer()
         missed += [fault] if fault else []
     values = {name: np.array([own[name] for own in found]) for name in found[0]}
     steps, counts = values.pop("step"), values.pop("paths")
@@ -100,11 +101,15 @@ def importance_sampled_crossing(
 
 @dataclass(frozen=True)
 class _Course:
-    """Paths led to one level by one guide; `counted` as for `march_tilted`."""
+    """Paths led to one level by one guide.
+
+    `counted` is as for `march_tilted`; `images` is 2 if each path also stands for its mirror image.
+    """
 
     aim: Aim
     guide: Guide
     counted: int
+    images: int
     seed: tuple
 
 
@@ -135,7 +140,10 @@ class _Sums:
 
 @dataclass(frozen=True)
 class _Request:
-    """What is asked for one threshold; `levels` and `times` are those of int g."""
+    """What is asked for one threshold; `levels` and `times` are those of int g.
+
+    `guide` is that of the Poisson solution, `led` has the last guide to each side, if any.
+    """
 
     scene: Scene
     levels: tuple[float, float]
@@ -146,6 +154,7 @@ class _Request:
     step: float | None
     paths: int | None
     guide: Guide
+    led: dict[int, Guide]
 
     def answer(self):
         """Return a dict over the horizons, and a message if it is not good enough.
@@ -203,6 +212,7 @@ class _Request:
                 f"W = {values['probability'][np.argmax(error)]:.3g} has an error of {worst:.1e}, "
                 f"above tol = {self.tol:g}; choose more paths or a shorter step, or loosen tol"
             )
+        values["probability"] = np.minimum(values["probability"], 1.0)
         known = {"probability_error": error, "lower": lower, "upper": upper}
         return values | known | {"step": step, "paths": paths}, fault
 
@@ -210,8 +220,26 @@ class _Request:
         """Return a probability that need not be told from 0."""
         return tuning.WEIGHTS.negligible if self.tol is None else self.tol / 4
 
+    @property
+    def order(self):
+        """Order of the bias in the step.
+
+        A path that comes back within a step is missed. If g is driven by the noise, it varies like
+        the root of h: such paths are a part h of all, and h^(1/4) of these never cross again.
+        """
+        scheme = registry.scheme(self.scene).weak_order(self.scene)
+        rough = self.scene.noise.driven in self.scene.observable_expression.free_symbols
+        return min(scheme, tuning.WEIGHTS.rough_order) if rough else scheme
+
+    @property
+    def mirrored(self):
+        """Whether the mirror image of a path to one level is as probable a path to the other."""
+        return self.scene.is_odd() and self.levels[0] == -self.levels[1] and not self.scene.start
+
     def sides(self, last):
         """Return the sides to which paths are led; one that hardly any path reaches is left out."""
+        if self.mirrored:
+            return [1]
         time = self.times[last]
         away = np.abs(np.array(self.levels) - self.guide.mean * time)
         log = scipy.special.log_ndtr(-away / (self.guide.gamma * math.sqrt(time)))
@@ -221,22 +249,24 @@ class _Request:
     def course(self, side, last):
         """Fit a guide to a level, by way of nearer ones if too few paths reach it at once."""
         aim = Aim(side, self.levels, float(self.times[last]))
-        step = coarse_step(self.scene) / 2 if self.step is None else self.step
         seed = labelled(labelled(self.seed, last), f"side {side}")
-        chosen = tuning.WEIGHTS
+        chosen, step = tuning.WEIGHTS, coarse_step(self.scene)
         for parts in chosen.ladder:
-            guide, before, effective = self.guide, 0.0, 0.0
+            guide, before, effective = self.led.get(side, self.guide), 0.0, 0.0
             for k in range(parts + chosen.repeated):
                 own = labelled(labelled(seed, f"fit {parts}"), k)
                 sampling = Sampling(step, chosen.fitted, own, threads=self.threads)
                 nearer = aim.nearer(min((k + 1) / parts, 1.0))
                 before = effective
                 guide, effective = refitted(self.scene, guide, self.guide, nearer, sampling)
+                if k >= parts - 1 and effective >= chosen.even * chosen.fitted:
+                    break
                 if k >= parts and effective < chosen.improved * before:
                     break
             if effective >= chosen.led:
-                counted = side if len(self.sides(last)) > 1 else 0
-                return _Course(aim, guide, counted, seed)
+                self.led[side] = guide
+                counted = side if self.mirrored or len(self.sides(last)) > 1 else 0
+                return _Course(aim, guide, counted, 1 + self.mirrored, seed)
         return None
 
     def sampled(self, courses, last, step):
@@ -258,8 +288,8 @@ class _Request:
             stated = np.max(np.abs(bias) + np.hypot(found.error, error))
             if self.step is not None or stated <= self.tolerance(found):
                 break
-            order = registry.scheme(self.scene).weak_order(self.scene)
-            step = refined_step(step, np.max(np.abs(bias) + error), self.allowed(found), order)
+            worst = np.max(np.abs(bias) + error)
+            step = refined_step(step, worst, self.allowed(found), self.order)
             sums, done = np.zeros_like(sums), 0
         return found, (bias, error), step, done
 
@@ -303,12 +333,12 @@ class _Request:
             return sums
 
         total = sum(parallel(run, sampling, sum(steps for steps, *_ in grid)))
-        return np.cumsum(total, axis=0)
+        return np.cumsum(total, axis=0) * course.images ** np.arange(SUMS)
 
     def bias(self, courses, found, step, paths):
         """Measure the bias of the step, with so many paths that it is known to what is allowed."""
         chosen = tuning.WEIGHTS
-        fewer = min(paths, max(chosen.first, BLOCK * (paths // MONTE_CARLO.halved // BLOCK)))
+        fewer = min(paths, max(chosen.first // 2, BLOCK * (paths // MONTE_CARLO.halved // BLOCK)))
         bias, error = self.halved(courses, found, step, fewer)
         more = fewer * (np.max(error) / self.allowed(found)) ** 2 if found.value[-1] > 0 else 0
         if self.paths is None and more > fewer:
@@ -324,7 +354,7 @@ class _Request:
             for change in self.changes(course, grid, step, paths):
                 total += change.sum(axis=1)
                 squares += np.sum(change**2, axis=1)
-        factor = bias_over_change(registry.scheme(self.scene).weak_order(self.scene))
+        factor = bias_over_change(self.order)
         # if no path crosses with one of the steps only, the error is that of one such path
         spread = np.sqrt(np.maximum(squares, found.weight**2))
         return factor * total / paths, factor * spread / paths
@@ -355,7 +385,8 @@ class _Request:
                     (x == course.counted) if course.counted else (x != 0) for x in (fine, coarse)
                 ]
                 differs = there[1].astype(float) - there[0]
-                own[:] = differs * np.exp(panels[0].total[TOTAL_LOG_WEIGHT, :lanes])
+                weights = np.exp(panels[0].total[TOTAL_LOG_WEIGHT, :lanes])
+                own[:] = course.images * differs * weights
             return change
 
         sampling = Sampling(step, paths, seed, threads=self.threads)

@@ -30,6 +30,7 @@ from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.curves import curves
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.importance_sampling import importance_sampled_crossing
+from nonsmooth.crossing.leading import leading_is_quicker
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
 from nonsmooth.crossing.state.problem import IntegralCrossing
 from nonsmooth.crossing.state.sampled import sampled_state_crossing
@@ -93,7 +94,8 @@ def crossing_probability(
           deterministic method misses a tolerance that is loose enough for counting.
         - ``"importance_sampling"`` leads paths to the threshold and weights them, for rare
           crossings of every scene in which int g spreads like a Brownian motion. It is chosen where
-          there is no deterministic method and `tol` is out of reach of counting.
+          there is no deterministic method, counting takes long, and the Brownian limit predicts a
+          probability so small that leading is quicker.
         - ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity, eq. (33) of the paper.
           It does not depend on p; its error does.
         - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
@@ -164,7 +166,7 @@ def crossing_probability(
     options["envelope"] = envelope
     given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
     attempts = (
-        _attempts(scene, horizons, p, given, len(thresholds)) if method is None else [(method, {})]
+        _attempts(scene, thresholds, horizons, p, given) if method is None else [(method, {})]
     )
 
     def attempt(name, limits):
@@ -207,7 +209,7 @@ def _by(method, given):
     return METHODS[method]
 
 
-def _attempts(scene, horizons, p, given, thresholds):
+def _attempts(scene, thresholds, horizons, p, given):
     """Choose the methods to try in turn, each with its limits.
 
     Monte Carlo comes before a solver if it may be faster. Its pilot tells how many paths are
@@ -224,8 +226,8 @@ def _attempts(scene, horizons, p, given, thresholds):
         counted = [("monte_carlo", {})]
         if "tol" not in given or of_counting or scene.primitive_variable is not None:
             return counted
-        _, least = least_steps(scene, p * horizons[-1], given["tol"])
-        return [("importance_sampling", {})] if least > choice.counted_steps else counted
+        quicker = leading_is_quicker(scene, thresholds, horizons, p, given["tol"])
+        return [("importance_sampling", {})] if quicker else counted
     tol = given.get("tol", default)
     attempts = [("deterministic", {})]
     if tol >= choice.sampled_tolerance or "tol" not in given:
@@ -240,11 +242,11 @@ def _attempts(scene, horizons, p, given, thresholds):
         fast = pilot <= choice.pilot_share * most and least <= most
         return [("monte_carlo", {"most": most})] if fast else []
 
-    solves = windows * thresholds  # each threshold is solved by itself
+    solves = windows * len(thresholds)  # each threshold is solved by itself
     attempts = sampled(solves * choice.seconds_solved[scene.dimension - 1]) + attempts
     covered = scene.is_line and scene.is_odd() and not scene.grows_too_fast
     if covered and tol * p**2 >= choice.least_corrected:
-        seconds = choice.seconds_corrected * thresholds
+        seconds = choice.seconds_corrected * len(thresholds)
         attempts = [*sampled(seconds), ("corrected", {"order": 3}), *attempts]
     return attempts
 

@@ -22,9 +22,15 @@ class MethodChoice:
     # tolerance and steps up to which Monte Carlo replaces a solver that fails; chosen: minutes
     sampled_tolerance: float = 1e-4
     sampled_steps: float = 1e11
-    # least number of steps of counting from which paths are led to the threshold instead; chosen:
-    # about a minute of one core, several times what importance sampling takes
-    counted_steps: float = 1e10
+    # steps up to which paths are counted without more ado; chosen: some ten seconds of one core,
+    # several times what the fit of a guide takes
+    counted_steps: float = 2.5e9
+    # of paths that are led to a threshold: what one takes, over what a counted one takes; the error
+    # of one over the probability; and how many take as long as the fits; fitted: nine scenes,
+    # benchmarks/rare_crossings.py
+    dearer: float = 10.0
+    spread_led: float = 1.5
+    least_led: float = 30_000.0
 
 
 @dataclass(frozen=True)
@@ -133,8 +139,11 @@ class Weights:
     # effective number of paths must grow for another one
     repeated: int = 3
     improved: float = 1.2
+    even: float = 0.25  # chosen: effective part of the paths from which one fit is enough
     # chosen: least effective number of paths of a fit, a few for each coefficient
     led: float = 50.0
+    # derived: order in the step of the crossings that are missed where the noise drives g itself
+    rough_order: float = 1.25
     # chosen: most paths that measure the bias of the step, over those of the estimate
     most_halved: int = 16
     # chosen: least effective number of paths of an estimate; the largest weight is then at most a

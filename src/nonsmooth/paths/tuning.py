@@ -140,10 +140,13 @@ class Tilt:
     higher_degree: int = 5
     # fitted: time added to what is left, because noise has no time to act just before the end
     pause: float = 0.3
-    # fitted: largest q, in units of 1/gamma, and in units of that of a straight way to the level;
-    # larger ones give single paths large weights
-    least_cap: float = 0.67
-    share: float = 0.5
+    haste: float = 1.0  # chosen: rate at which the polynomial of the last moments comes in
+    # fitted: bound of q, in units of 1/gamma, and in units of that of a straight way to the level
+    least_cap: float = 1.3
+    share: float = 1.0
+    # fitted: largest theta, in units of gamma times the bound of q; more gives single paths large
+    # weights
+    bound: float = 1.25
 
 
 TILT = Tilt()
@@ -168,10 +171,13 @@ POISSON_FIT = PoissonFit()
 class CrossEntropy:
     """The fit of a guide to paths that have reached a level, see `tilted.cross_entropy`."""
 
-    records: int = 250  # chosen: most steps of a path at which the fit looks
+    records: int = 120  # chosen: most steps of a path at which the fit looks
+    look: float = 0.3  # chosen: time for which it looks, in which the state changes little
     # chosen: weight of the old guide, where few paths have come by, over that of the new one
-    defence: float = 0.02
-    ridge: float = 1.0  # derived: a priori a coefficient explains half a unit of relative entropy
+    defence: float = 0.1
+    # chosen: inverse variances of a coefficient a priori among which the evidence decides, in units
+    # of what all paths tell of one; from full freedom to hardly any
+    ridges: tuple[float, float, int] = (1e-4, 10.0, 26)
 
 
 CROSS_ENTROPY = CrossEntropy()

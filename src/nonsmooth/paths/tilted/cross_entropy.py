@@ -37,7 +37,7 @@ class _Record:
     ----------
     state : numpy.ndarray, shape (records, d, paths)
     delta, noise : numpy.ndarray, shape (records, paths)
-        int g before a step, and the increment of the Brownian motion in it.
+        int g before a few steps, and the sum of the normal numbers of these.
     on_way : numpy.ndarray of bool, shape (records, paths)
         Whether no level had been reached.
     weight : numpy.ndarray, shape (paths,)
@@ -78,12 +78,13 @@ def refitted(
     stride = -(-steps // tuning.CROSS_ENTROPY.records)
     s = registry.coefficients(scene, sampling.scheme, h, sampling.precision)
     tilt = guide.towards(aim, sampling.precision)
+    few = min(stride, max(1, round(tuning.CROSS_ENTROPY.look / h)))
     compile_march_tilted(s, new_panel(scene, sampling.seed, 0, sampling.precision), tilt)
 
     def run(job):
         block, lanes = job
         panel = new_panel(scene, sampling.seed, block, sampling.precision)
-        return _recorded(s, panel, tilt, lanes, steps, stride, aim.levels, guide.basis.rows)
+        return _recorded(s, panel, tilt, lanes, steps, stride, few, aim.levels, guide.basis.rows)
 
     kept = list(parallel(run, sampling, steps))
     weights = np.concatenate([record.weight for record in kept])
@@ -92,61 +93,64 @@ def refitted(
     effective = weights.sum() ** 2 / np.sum(weights**2)
     unit = effective / weights.sum()
     times = h * stride * np.arange(len(kept[0].delta))
-    return _fit(scene, guide, prior, aim, kept, times, h, unit, effective), effective
+    return _fit(scene, guide, prior, aim, kept, times, h, few, unit, effective), effective
 
 
-def _recorded(s, panel, tilt, lanes, steps, stride, levels, rows):
-    """Lead the paths of a block to the end; look at every so many steps."""
+def _recorded(s, panel, tilt, lanes, steps, stride, few, levels, rows):
+    """Lead the paths of a block to the end; look at a few steps of every so many."""
     uncounted = np.zeros(0)
     kept = []
     for k in range(0, steps, stride):
         state = panel.data[list(rows), :lanes].copy()
         delta = panel.data[BASE, :lanes] + panel.data[DELTA, :lanes]
         on_way = panel.data[REACHED, :lanes] == 0
-        now = k * float(s.step)
-        march_tilted(s, panel, tilt, lanes, 1, now, levels, 0, uncounted)
-        kept.append((state, delta, panel.data[0, :lanes].copy(), on_way))
-        rest = min(stride, steps - k) - 1
-        if rest:
-            march_tilted(s, panel, tilt, lanes, rest, now + s.step, levels, 0, uncounted)
+        noise, last = np.zeros(lanes, panel.data.dtype), min(k + stride, steps)
+        seen = min(k + few, last)
+        for j in range(k, seen):
+            march_tilted(s, panel, tilt, lanes, 1, j * float(s.step), levels, 0, uncounted)
+            noise += panel.data[0, :lanes]
+        kept.append((state, delta, noise, on_way))
+        if last > seen:
+            now = seen * float(s.step)
+            march_tilted(s, panel, tilt, lanes, last - seen, now, levels, 0, uncounted)
     there = panel.data[REACHED, :lanes] == tilt.side
     weight = np.where(there, np.exp(panel.total[TOTAL_LOG_WEIGHT, :lanes]), 0.0)
     return _Record(*map(np.array, zip(*kept, strict=True)), weight)
 
 
-def _fit(scene, guide, prior, aim, kept, times, h, unit, effective):
-    """Solve the linear system for the coefficients of P_1, P_2, P_3."""
+def _fit(scene, guide, prior, aim, kept, times, h, few, unit, effective):
+    """Fit the coefficients of P_1 to P_4."""
     chosen, basis = tuning.CROSS_ENTROPY, prior.basis
     sets = _terms(scene, basis)
-    size = sum(map(len, sets))
-    gram, everywhere, right = np.zeros((size, size)), np.zeros((size, size)), np.zeros(size)
+    cuts = np.cumsum([len(terms) for terms in sets])
+    before = np.concatenate([prior.coefficients[1][sets[0]], np.zeros(cuts[-1] - cuts[0])])
+    information, score = np.zeros((cuts[-1], cuts[-1])), np.zeros(cuts[-1])
     arrived = []
     paths = sum(len(record.weight) for record in kept)
+    defence = np.float32(chosen.defence * effective / paths)
     for record in kept:
         weight = unit * record.weight
         for k, now in enumerate(times):
             on_way = record.on_way[k]
-            values = basis.values(record.state[k].astype(float))
+            values = basis.values(record.state[k])
             u = prior.coefficients[0] @ values
             q = guide.rate(aim, aim.time - now, record.delta[k] + u)
+            late = np.exp(tuning.TILT.haste * (now - aim.time))
+            factors = q, q**2, q**3, late * q
             features = np.concatenate(
-                [q ** (power + 1) * values[terms] for power, terms in enumerate(sets)]
+                [factor * values[terms] for factor, terms in zip(factors, sets, strict=True)],
+                dtype=np.float32,
             )[:, on_way]
-            own = weight[on_way]
-            gram += h * (features * own) @ features.T
-            everywhere += h * features @ features.T
-            right += features @ (own * np.sqrt(h) * record.noise[k][on_way])
+            own = weight[on_way].astype(np.float32)
+            information += few * h * ((features * (own + defence)) @ features.T)
+            unexplained = np.sqrt(h) * record.noise[k][on_way] - few * h * (before @ features)
+            score += features @ (own * unexplained)
             if k > 0:
                 now_there = record.on_way[k - 1] & ~on_way & (weight > 0)
                 arrived.append([weight[now_there].sum(), weight[now_there] @ u[now_there]])
-    before = np.concatenate([prior.coefficients[1][sets[0]], np.zeros(size - len(sets[0]))])
-    scale = np.maximum(np.sqrt(np.diag(gram)), np.finfo(float).tiny)
-    defended = gram + chosen.defence * effective / paths * everywhere
-    matrix = defended / np.outer(scale, scale) + chosen.ridge / effective * np.eye(size)
-    change = np.linalg.lstsq(matrix, (right - gram @ before) / scale, rcond=None)[0] / scale
+    parts = np.split(before + _likeliest(information, score), cuts[:-1])
     coefficients = np.zeros_like(prior.coefficients)
     coefficients[0] = prior.coefficients[0]
-    parts = np.split(before + change, np.cumsum([len(terms) for terms in sets])[:-1])
     for power, (terms, part) in enumerate(zip(sets, parts, strict=True)):
         coefficients[1 + power, terms] = part
     total, at_level = np.sum(arrived, axis=0) if arrived else (0.0, 0.0)
@@ -154,11 +158,29 @@ def _fit(scene, guide, prior, aim, kept, times, h, unit, effective):
     return replace(guide, coefficients=coefficients, kappa=float(kappa))
 
 
+def _likeliest(information, score):
+    """Return the likeliest coefficients, normal a priori with the variance of greatest evidence.
+
+    The log likelihood of c is score c - c information c / 2. All coefficients are a priori alike in
+    the units in which the information has the diagonal 1.
+    """
+    # a coefficient of which nothing is known stays as it was
+    least = np.finfo(np.float32).tiny
+    scale = np.sqrt(np.maximum(np.diag(information), least * np.trace(information)))
+    known, directions = np.linalg.eigh(information / np.outer(scale, scale))
+    known, found = np.maximum(known, 0.0), directions.T @ (score / scale)
+    ridges = np.geomspace(*tuning.CROSS_ENTROPY.ridges)[:, None]
+    evidence = np.sum(found**2 / (known + ridges) - np.log1p(known / ridges), axis=1)
+    ridge = ridges[np.argmax(evidence)]
+    return directions @ (found / (known + ridge)) / scale
+
+
 def _terms(scene, basis):
-    """Return the monomials of P_1, P_2 and P_3; for odd scenes even, odd and even ones."""
+    """Return the monomials of P_1 to P_4; for odd scenes even, odd, even and even ones."""
     degrees, highest = basis.degrees, basis.degrees.max() - 1
+    lower = min(highest, tuning.TILT.higher_degree)
     result = []
-    for power in range(3):
-        kept = degrees <= (highest if power == 0 else min(highest, tuning.TILT.higher_degree))
-        result.append(np.flatnonzero(kept & (degrees % 2 == power % 2) if scene.is_odd() else kept))
+    for odd, degree in ((0, highest), (1, lower), (0, lower), (0, lower)):
+        kept = degrees <= degree
+        result.append(np.flatnonzero(kept & (degrees % 2 == odd) if scene.is_odd() else kept))
     return result

@@ -46,7 +46,7 @@ from nonsmooth.paths.time_loop import (
 LOG_WEIGHT, REACHED = MARTINGALE, BEFORE
 TOTAL_LOG_WEIGHT = TOTAL_MARTINGALE
 SUMS = 3  # over the paths that have reached the level: their number, weights, and squares of these
-_VALUES, _MONOMIALS = len(STATE), len(STATE) + 4  # rows of the memory that follow the state
+_VALUES, _MONOMIALS = len(STATE), len(STATE) + 5  # rows of the memory that follow the state
 _MEMORY = 64  # rows of the memory
 
 
@@ -113,6 +113,8 @@ def march_tilted_pair(
 ) -> None:
     """Advance two panels on the same noise, which is shifted as the first one's paths need it.
 
+    If one of two companions has reached a level, the noise is not shifted any more.
+
     Parameters
     ----------
     fine, coarse : NamedTuple
@@ -158,7 +160,7 @@ def _march(s, panel, tilt, memory, lanes, first, last, steps, began, lower, uppe
                 if s.normals == 4:
                     normals(words, data[2:], lanes)
                 normal = 0
-            _shift(tilt, data, memory, normal, s.step, began + k * s.step, lanes)
+            _shift(tilt, data, data, memory, normal, s.step, began + k * s.step, lanes)
             noise_kick(s, data, normal, lanes)
             normal += s.normals
         _notice(data, lanes, lower, upper)
@@ -181,7 +183,7 @@ def _march_pair(
         flow_of_pair(fine, coarse, data, joined, k, steps, lanes)
         if k < 2 * steps:
             normal = draw(fine, words, data, odd, lanes)
-            _shift(tilt, data, memory, normal, fine.step, began + k * fine.step, lanes)
+            _shift(tilt, data, joined, memory, normal, fine.step, began + k * fine.step, lanes)
             join_noise(fine, data, joined, normal, odd, lanes)
             noise_kick(fine, data, normal, lanes)
             if odd:
@@ -205,14 +207,19 @@ def _notice(data, lanes, lower, upper):
 
 
 @inlined
-def _shift(tilt, data, memory, normal, step, now, lanes):
-    """Shift normal numbers and add to the logarithm of the likelihood ratio; see `tilt.Guide`."""
+def _shift(tilt, data, other, memory, normal, step, now, lanes):
+    """Shift normal numbers and add to the logarithm of the likelihood ratio; see `tilt.Guide`.
+
+    Neither a path that has reached a level is led any more nor one whose companion in `other` has:
+    what it does alone then happens with the weight that both had on arrival.
+    """
     number = data[0, 0]
     left = tilt.end - now
     scale = like(number, 1.0 / (tilt.gamma * math.sqrt(left)))
     target = like(number, tilt.target - tilt.side * tilt.mean * left)
     root, side, cap = like(number, math.sqrt(step)), tilt.side, tilt.cap
-    zero, one, half = like(number, 0.0), like(number, 1.0), like(number, 0.5)
+    late = like(number, math.exp(tilt.haste * (now - tilt.due)))
+    zero, half, bound = like(number, 0.0), like(number, 0.5), like(number, root * tilt.bound)
     # the hazard rate of the normal law (A. V. Boyd, 1959), to a percent
     slope, inverse = like(number, 1 - 1 / math.pi), like(number, 1 / math.pi**2)
     square = like(number, 2 / math.pi)
@@ -221,11 +228,12 @@ def _shift(tilt, data, memory, normal, step, now, lanes):
         covered = data[BASE, i] + data[DELTA, i] + memory[_VALUES, i]
         away = maximum(fma(-side, covered, target), zero) * scale
         hazard = fma(slope, away, math.sqrt(fma(inverse * away, away, square)))
-        q = side * minimum(scale * hazard, cap)
-        q = where(data[REACHED, i] == zero, q, zero)
+        q = scale * hazard
+        q = side * q * cap / (q + cap)
+        q = where(data[REACHED, i] == zero, where(other[REACHED, i] == zero, q, zero), zero)
         theta = fma(q, memory[_VALUES + 3, i], memory[_VALUES + 2, i])
-        theta = fma(q, theta, memory[_VALUES + 1, i])
-        shift = minimum(maximum(root * q * theta, -one), one)
+        theta = fma(q, theta, fma(late, memory[_VALUES + 4, i], memory[_VALUES + 1, i]))
+        shift = minimum(maximum(root * q * theta, -bound), bound)
         drawn = data[normal, i]
         data[LOG_WEIGHT, i] -= shift * fma(half, shift, drawn)
         data[normal, i] = drawn + shift

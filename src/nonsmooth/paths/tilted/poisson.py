@@ -33,7 +33,7 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     Returns
     -------
     Guide
-        With P_1 = sigma d_v u, and P_2 = P_3 = 0.
+        With P_1 = sigma d_v u; the other P are 0.
 
     Raises
     ------
@@ -51,14 +51,18 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     used = np.flatnonzero(basis.degrees % 2 == 1 if scene.is_odd() else basis.degrees > 0)
     lower, times = (slope[used] for slope in basis.slopes)
     columns, martingales, gains = [], [], []
+
+    def values():
+        return basis.values(panel.data[rows, :BLOCK].astype(float))
+
     for _ in range(chosen.stretches):
-        before, began = basis.values(panel.data[rows, :BLOCK])[used], panel.total[:, :BLOCK].copy()
+        before, began = values()[used], panel.total[:, :BLOCK].copy()
         martingale = np.zeros_like(before)
         for _ in range(count):
-            slope = basis.values(panel.data[rows, :BLOCK])[lower] * times[:, None]
+            slope = values()[lower] * times[:, None]
             march(s, panel, BLOCK, 1, *EVERYWHERE)
             martingale += factor * slope * panel.data[0, :BLOCK]
-        columns.append((martingale - basis.values(panel.data[rows, :BLOCK])[used] + before).T)
+        columns.append((martingale - values()[used] + before).T)
         martingales.append(martingale.T)
         gains.append(panel.total[TOTAL_DELTA, :BLOCK] - began[TOTAL_DELTA])
     x, gain = np.concatenate(columns), np.concatenate(gains)
@@ -73,7 +77,7 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
             "int g does not spread like a Brownian motion here, which importance sampling needs; "
             "use method='monte_carlo'"
         )
-    coefficients = np.zeros((4, len(basis.degrees)))
+    coefficients = np.zeros((5, len(basis.degrees)))
     coefficients[0, used] = own
     np.add.at(coefficients[1], lower, own * times * factor / np.sqrt(step))
     mean = 0.0 if scene.is_odd() else weights[-1] / (count * step)

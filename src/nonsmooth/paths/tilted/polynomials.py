@@ -63,9 +63,9 @@ class Polynomials:
 
     def values(self, state: np.ndarray) -> np.ndarray:
         """Evaluate the monomials, shape (terms, l), at states of the shape (d, l)."""
-        z = np.clip(state / self.reach[:, None], -1.0, 1.0)
+        z = np.clip(state / self.reach[:, None].astype(state.dtype), -1.0, 1.0)
         parents, factors = self.origin
-        result = np.ones((len(parents), state.shape[1]))
+        result = np.ones((len(parents), state.shape[1]), dtype=state.dtype)
         for k in range(1, len(parents)):
             result[k] = result[parents[k]] * z[factors[k]]
         return result

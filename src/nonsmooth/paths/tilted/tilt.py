@@ -8,9 +8,11 @@ s), D = int g and u(z) the Poisson solution. Doob's transform with it adds theta
 
 v being the variable that noise enters. A guide replaces sigma d_v u by polynomials P in the state,
 
-    theta = q (P_1 + q P_2 + q^2 P_3),
+    theta = q (P_1 + q P_2 + q^2 P_3 + exp(-lambda s) P_4),
 
-which also hold for large deviations, where the response to a large q is not linear.
+which also hold for large deviations, where the response to a large q is not linear, and for the
+last moments, in which the process is no Brownian motion. As q grows without bound towards the end,
+c q / (c + q) stands for it, c being the q of a straight way to the level or a fixed one.
 """
 
 from dataclasses import dataclass, replace
@@ -28,9 +30,10 @@ class Tilt(NamedTuple):
 
     `parent` and `variable` make each monomial from another one; `width` are the inverse reaches of
     the state variables; `coefficient` belongs to the monomial `term` of the polynomial `output`
-    (0 for u, 1 to 3 for P). `side` is 1 for the upper level and -1 for the lower, `target` the
-    level times `side` plus kappa, `mean` that of g, `gamma` the root of gamma^2, `end` the time
-    by which the level is to be reached with a while added, and `cap` the largest q.
+    (0 for u, 1 to 4 for P). `side` is 1 for the upper level and -1 for the lower, `target` the
+    level times `side` plus kappa, `mean` that of g, `gamma` the root of gamma^2, `due` the time
+    by which the level is to be reached, `end` that with a while added, `haste` is lambda, `cap`
+    is c, and `bound` the largest theta.
     """
 
     parent: np.ndarray
@@ -43,8 +46,11 @@ class Tilt(NamedTuple):
     target: float
     mean: float
     gamma: float
+    due: float
     end: float
+    haste: float
     cap: Any
+    bound: float
 
 
 @dataclass(frozen=True)
@@ -83,8 +89,8 @@ class Guide:
     Attributes
     ----------
     basis : Polynomials
-    coefficients : numpy.ndarray, shape (4, terms)
-        Of u and of P_1, P_2, P_3.
+    coefficients : numpy.ndarray, shape (5, terms)
+        Of u and of P_1 to P_4.
     mean, gamma : float
         The stationary mean of g and the root of gamma^2.
     kappa : float
@@ -116,8 +122,11 @@ class Guide:
             float(aim.distance + self.kappa),
             float(self.mean),
             float(self.gamma),
+            float(aim.time),
             float(aim.time + tuning.TILT.pause),
+            float(tuning.TILT.haste),
             number(self.largest_rate(aim)),
+            float(tuning.TILT.bound * self.gamma * self.largest_rate(aim)),
         )
 
     def rate(self, aim: Aim, left: float, covered: np.ndarray) -> np.ndarray:
@@ -126,9 +135,10 @@ class Guide:
         target = aim.distance + self.kappa - aim.side * self.mean * left
         away = np.maximum(target - aim.side * covered, 0.0) * scale
         hazard = (1 - 1 / np.pi) * away + np.sqrt((away / np.pi) ** 2 + 2 / np.pi)
-        return aim.side * np.minimum(scale * hazard, self.largest_rate(aim))
+        q, cap = scale * hazard, self.largest_rate(aim)
+        return aim.side * q * cap / (q + cap)
 
     def largest_rate(self, aim: Aim) -> float:
-        """Return the largest q, beyond which noise has no time to act."""
+        """Return the bound of q; more would give single paths large weights."""
         typical = aim.distance / (self.gamma * aim.time)
         return max(tuning.TILT.least_cap, tuning.TILT.share * typical) / self.gamma

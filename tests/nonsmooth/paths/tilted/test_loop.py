@@ -35,7 +35,7 @@ def tilt_of(scene, levels, seed=1):
     guide = poisson.fitted(scene, STEP, seed)
     rng = np.random.default_rng(seed)
     # so that each polynomial gives shifts of a size that the noise could make up for
-    scale = guide.gamma ** np.array([[1], [1], [2], [3]]) / 8
+    scale = guide.gamma ** np.array([[1], [1], [2], [3], [1]]) / 8
     wrong = scale * rng.normal(size=guide.coefficients.shape)
     wrong[0] = guide.coefficients[0]
     return replace(guide, coefficients=wrong).towards(Aim(1, levels, STEPS * STEP))

@@ -1,0 +1,49 @@
+"""Whether leading paths to a threshold is quicker than counting those that reach it by chance.
+
+Both errors fall with the root of the number of paths. For one path, that of counting is
+sqrt(W (1 - W)), that of led ones a multiple of W. So led paths win where W is small against the
+tolerance's inverse square, which the Brownian limit tells beforehand.
+"""
+
+from contextlib import suppress
+
+import numpy as np
+
+from nonsmooth.crossing import tuning
+from nonsmooth.crossing.brownian import brownian_crossing
+from nonsmooth.errors import SceneError
+from nonsmooth.paths.resolution import coarse_step, paths_for
+from nonsmooth.paths.tilted import poisson
+from nonsmooth.scenes.scene import Scene
+
+
+def leading_is_quicker(
+    scene: Scene, thresholds: np.ndarray, horizons: np.ndarray, p: float, tol: float
+) -> bool:
+    """Predict which of the two ways of sampling takes fewer steps.
+
+    Parameters
+    ----------
+    scene : Scene
+    thresholds : numpy.ndarray, shape (m, 2)
+        Lower and upper levels, "1".
+    horizons : numpy.ndarray, shape (k,)
+    p : float
+    tol : float
+        Absolute error.
+    """
+    chosen = tuning.METHOD_CHOICE
+    steps = p * horizons[-1] / coarse_step(scene)
+    fewest = tuning.COUNTING.skew / tol
+    if max(fewest, paths_for(0.5, tol)) * steps < chosen.counted_steps:
+        return False  # counting takes no time, whatever the probability is
+    with suppress(SceneError):  # int g does not spread like a Brownian motion
+        guide = poisson.fitted(scene, coarse_step(scene) / 2, 0)
+        centres = guide.mean * np.sqrt(p) * horizons[-1]
+        lower, upper = (thresholds - centres).T / guide.gamma
+        inside = (lower < 0) & (upper > 0)
+        W = np.where(inside, brownian_crossing(np.maximum(upper, 1e-300), horizons[-1], lower), 1.0)
+        counted = max(fewest, *(paths_for(np.sqrt(w * (1 - w)), tol) for w in W))
+        led = [chosen.least_led + paths_for(chosen.spread_led * w, tol) for w in W]
+        return chosen.dearer * sum(led) < counted
+    return False
