@@ -81,7 +81,8 @@ def importance_sampled_crossing(
             f"{quoted(scene.observable)}, so that no formula guides them; use method='monte_carlo'"
         )
     guide = poisson.fitted(scene, coarse_step(scene) / 2, labelled(seed, "importance"))
-    found, missed = [{}] * len(thresholds), []
+    found: list[dict] = [{} for _ in thresholds]
+    missed = []
     led: dict[int, Guide] = {}
     # from the nearest threshold on, as guides to it lead some way to the next one
     width = np.where(np.isfinite(thresholds), np.abs(thresholds), 0.0).sum(axis=1)

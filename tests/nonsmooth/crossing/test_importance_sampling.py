@@ -94,6 +94,39 @@ def test_every_scene_against_counting(name, n):
     assert (np.abs(found.probability - counted.probability) / spread).item() < LIMIT
 
 
+def test_mirror_images_stand_for_the_other_side():
+    """A start next to 0 has no mirror image: both sides are led, and both ways agree."""
+    options = {"p": 2.0, "seed": 7, "step": 0.1, "paths": 4000}
+    one, both = (
+        sampled(scene, 1.5, [2.0], **options)
+        for scene in (FRICTION, FRICTION.with_start({"y": 1e-9}))
+    )
+    spread = np.hypot(one.standard_error, both.standard_error)
+    assert np.abs(one.probability - both.probability).item() < LIMIT * spread.item()
+
+
+@pytest.mark.slow
+def test_intervals_are_honest_where_the_step_is_long():
+    """Forty 95 % intervals at W = 1e-2, with a bias of the step of twice the standard error.
+
+    Less than 32 hold the value with a probability of 2e-4 if each does with 95 %. The distances
+    over the stated error have the deviation 1, their mean the standard error 0.16.
+    """
+    exact = solved(FRICTION, (-np.inf, 1.305), [2.0], 10.0, tol=1e-10).probability.item()
+    options = {"step": 0.1, "paths": 4000, "tol": 1.0}
+    runs = [
+        sampled(FRICTION, (-np.inf, 1.305), [2.0], 10.0, seed=seed, **options) for seed in range(40)
+    ]
+    held = [run.lower.item() <= exact <= run.upper.item() for run in runs]
+    assert sum(held) >= 32
+    distances = [
+        (run.probability - run.step_bias - exact).item()
+        / np.hypot(run.standard_error, run.step_bias_error).item()
+        for run in runs
+    ]
+    assert abs(np.mean(distances)) < LIMIT / np.sqrt(40)
+
+
 def test_threads_change_no_bit():
     """The same seed gives the same bits on one thread and on two."""
     runs = [
