@@ -14,6 +14,7 @@ or by counting paths. The manual has the derivations and the choice of the metho
 - `first_passage.distribution.deterministic_crossing`: the deterministic method.
 - `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting` and the
   intervals of `proportions`.
+- `leading.importance_sampling.importance_sampled_crossing`: rare crossings, by weighted paths.
 - `state.crossing.state_crossing_probability`: crossings of the state, not of an integral.
 - `curves.curves`: probabilities over horizons, as the public functions return them.
 - `tuning`: resolutions and switching points.

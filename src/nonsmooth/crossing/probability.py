@@ -29,8 +29,8 @@ from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.curves import curves
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
-from nonsmooth.crossing.importance_sampling import importance_sampled_crossing
-from nonsmooth.crossing.leading import leading_is_quicker
+from nonsmooth.crossing.leading.choice import leading_is_quicker
+from nonsmooth.crossing.leading.importance_sampling import importance_sampled_crossing
 from nonsmooth.crossing.monte_carlo import least_steps, sampled_crossing
 from nonsmooth.crossing.state.problem import IntegralCrossing
 from nonsmooth.crossing.state.sampled import sampled_state_crossing

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.crossing.leading import leading_is_quicker
+from nonsmooth.crossing.leading.choice import leading_is_quicker
 
 SCENE = ns.Scene("friction", noise="hamiltonian")
 TOLERANCES = np.geomspace(1e-1, 1e-9, 9)
