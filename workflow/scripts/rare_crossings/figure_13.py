@@ -1,7 +1,8 @@
 """Figure 13: rare crossings of every scene by importance sampling, and the formulas."""
 
 from nonsmooth.scenes.scene import Scene
-from reproduction.rendering.plots import BLACK, BLUE, GREEN, ORANGE, draw, scene_panels
+from reproduction.rendering.panels import scene_panels
+from reproduction.rendering.plots import BLACK, BLUE, GREEN, ORANGE, draw
 
 LEAST = 1e-11  # lower end of the axis
 
