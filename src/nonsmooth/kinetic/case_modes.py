@@ -180,6 +180,47 @@ def first_passage(grid: Ordinates, z: complex, lower: float, upper: float) -> co
     return sum(w.at(d) for w, d in ((above, upper), (below, -lower)) if np.isfinite(d))
 
 
+def by_exit(grid: Ordinates, z: complex, lower: float, upper: float) -> np.ndarray:
+    """E exp(-z tau) of the paths that leave through the upper and through the lower wall.
+
+    Parameters
+    ----------
+    grid, z, lower, upper
+        As for `first_passage`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (2,)
+    """
+    if np.isinf(upper - lower):
+        return np.array([0.0, 1.0] if np.isinf(upper) else [1.0, 0.0]) * first_passage(
+            grid, z, lower, upper
+        )
+    above, below = modes(grid, z)
+    weights = np.sqrt(grid.masses[grid.moving])
+    far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
+    if grid.mirrored:
+        even, odd = (
+            np.linalg.solve(above.own + sign * above.other * far_above, weights / 2)
+            for sign in (1, -1)
+        )
+        strengths = np.block([[even + odd, even - odd], [even - odd, even + odd]])
+        strengths = strengths.reshape(2, -1).T
+    else:
+        leaves = grid.g[grid.moving] > 0
+        right = np.zeros((len(weights), 2))
+        many = len(above.rates)
+        right[:many, 0], right[many:, 1] = weights[leaves], weights[~leaves]
+        strengths = np.linalg.solve(
+            np.block([[above.own, below.other * far_below], [above.other * far_above, below.own]]),
+            right,
+        )
+    start = np.append(
+        above.start * np.exp(-above.rates * upper), below.start * np.exp(below.rates * lower)
+    )
+    return start @ strengths
+
+
 def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Waves, Waves]:
     """E exp(-z tau) as a function of the place in (lower, upper) at which int_0^t g begins.
 

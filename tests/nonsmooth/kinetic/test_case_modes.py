@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from nonsmooth.kinetic.case_modes import first_passage
+from nonsmooth.kinetic.case_modes import by_exit, first_passage
 from nonsmooth.kinetic.ordinates_line import ordinates
-from references import MIRRORED, SKEWED
+from references import FRICTION, MIRRORED, SKEWED
 
 
 @pytest.mark.slow
@@ -20,3 +20,24 @@ def test_transform_without_symmetry(z):
         assert abs(values[1] - values[2]) < 1e-7
         swapped = first_passage(ordinates(MIRRORED, 9, 1.0), z, -levels[1], -levels[0])
         assert abs(swapped - values[1]) < 1e-9
+
+
+@pytest.mark.parametrize("scene", [FRICTION, SKEWED])
+@pytest.mark.parametrize("levels", [(-0.3, 0.6), (-np.inf, 0.6), (-0.6, np.inf)])
+def test_parts_of_the_exits_have_the_sum(scene, levels):
+    """On half grids and on whole ones; nobody leaves through a wall that is infinitely far."""
+    grid = ordinates(scene, 6, 1.0)
+    for z in (0.7, 0.3 + 2j):
+        parts = by_exit(grid, z, *levels)
+        assert abs(parts.sum() - first_passage(grid, z, *levels)) < 1e-10
+    parts = by_exit(grid, 0.1, *levels)
+    assert np.all(parts[np.isfinite(levels[::-1])] > 0)
+    assert np.all(parts[np.isinf(levels[::-1])] == 0)
+
+
+def test_the_nearer_exit_is_taken_more_often():
+    """Thresholds exchanged exchange the parts, if g is odd and the start 0."""
+    grid = ordinates(FRICTION, 6, 1.0)
+    upper, lower = by_exit(grid, 0.5, -0.3, 0.6).real
+    assert lower > upper
+    assert np.allclose(by_exit(grid, 0.5, -0.6, 0.3).real, [lower, upper], rtol=1e-9)

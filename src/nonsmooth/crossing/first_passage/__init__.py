@@ -14,6 +14,7 @@ is `docs/methods/first_passage.md`; to add a problem see
   how the second is solved at late and at early times.
 - `each_part.refine_each_part`: refinement of one part of a resolution at a time.
 - `inversion.contour_solver`: the inverse Laplace transform for many times.
+- `vertical_lines.inverted`: the same by rational fits, for one variable.
 - `saddle_points.saddle_points`, `contours.hyperbola`, `contours.through_saddle`,
   `contours.inverted`: its parts.
 """

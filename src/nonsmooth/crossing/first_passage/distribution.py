@@ -198,10 +198,10 @@ def _answer(problem, times, solution, error, tol):
     )
 
 
-def _solver(problem: FirstPassageProblem, times: np.ndarray) -> Solver:
+def _solver(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> Solver:
     """Return the function that solves a problem on a level; see `inversion.contour_solver`."""
     if isinstance(problem, LaplaceProblem):
-        return contour_solver(problem, times)
+        return contour_solver(problem, times, tol)
     assert isinstance(problem, DirectProblem)
     everywhere = np.full(len(times), True)
     return lambda level, known, wanted: (problem.solve(times, level), everywhere)
@@ -215,7 +215,7 @@ class _Refinement:
 
     def __init__(self, problem: FirstPassageProblem, times: np.ndarray, tol: float):
         self.problem, self.times, self.tol = problem, times, tol
-        self._solve = _solver(problem, times)
+        self._solve = _solver(problem, times, tol)
         self._found = np.array([np.zeros(len(times)), np.ones(len(times))])
         self._wanted = np.full(len(times), True)
         self._change: float | np.ndarray = 0.0

@@ -1,7 +1,7 @@
 """Inversion of the Laplace transform of first-passage times, for many times at once.
 
 The times are divided into windows, each served by one contour on which F(z) = E exp(-z tau) is
-evaluated. With increasing time there are up to four stages:
+evaluated. For two variables there are up to four stages with increasing time:
 
 - At first crossings are so rare that Chernoff's bound of their probability is negligible. The
   probability is set to 0.
@@ -10,21 +10,26 @@ evaluated. With increasing time there are up to four stages:
 - Later the contour is a hyperbola around the poles of F on the negative axis and the pole of 1/z.
 - In the end the survival probability is small. It is computed from (1 - F(z)) / z, and the
   hyperbola crosses the axis at the leading pole instead of 0, which keeps its relative error small.
+
+For one variable, F is good enough to be fitted by rational functions on vertical lines
+(`vertical_lines`): in the rise through a saddle point, and later on one line for all times but
+those of the end.
 """
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from scipy.optimize import root_scalar
 
-from nonsmooth.crossing.first_passage import contours, tuning
+from nonsmooth.crossing.first_passage import contours, tuning, vertical_lines
 from nonsmooth.crossing.first_passage.problem import ContourLevel, LaplaceProblem
 from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_points
 
 Solver = Callable[[ContourLevel, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def contour_solver(problem: LaplaceProblem, times: np.ndarray) -> Solver:
+def contour_solver(problem: LaplaceProblem, times: np.ndarray, tol: float) -> Solver:
     """Prepare the inversion for given times.
 
     Parameters
@@ -32,6 +37,8 @@ def contour_solver(problem: LaplaceProblem, times: np.ndarray) -> Solver:
     problem : LaplaceProblem
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
+    tol : float
+        Absolute error wanted, for fits on vertical lines.
 
     Returns
     -------
@@ -43,7 +50,8 @@ def contour_solver(problem: LaplaceProblem, times: np.ndarray) -> Solver:
     saddles = saddle_points(problem, times)
 
     def solve(level, known, wanted):
-        return _Inversion(problem, times, saddles, level, known, wanted).run()
+        kind = partial(_OnVerticalLines, tol) if problem.on_vertical_lines else _Inversion
+        return kind(problem, times, saddles, level, known, wanted).run()
 
     return solve
 
@@ -80,13 +88,17 @@ class _Inversion:
         begin = int(np.searchsorted(self.saddles.bound, np.log(settings.least_probability)))
         ends = settings.relative and self.problem.two_sided
         late = begin + self._first_small(self.known[1, begin:]) if ends else len(self.times)
-        windows = list(_hyperbolic(self.times, self.saddles, begin, late))
+        windows = self._windows_of_later(begin, late)
         risen = windows[0][0].start if windows else late
         self._rise(begin, risen)
         self._later(windows)
         if ends:
             self._end(risen)
         return self.found, self.solved
+
+    def _windows_of_later(self, begin, end):
+        """Return windows that hyperbolas serve, each with the kind of hyperbola."""
+        return list(_hyperbolic(self.times, self.saddles, begin, end))
 
     def _first_small(self, survival):
         return int(np.searchsorted(-survival, -tuning.INVERSION.small))
@@ -162,6 +174,74 @@ class _Inversion:
         nodes = round(self.level.nodes + kind.more + settings.per_decade * np.log10(last / first))
         contour = contours.hyperbola(first, last, nodes, kind.sector, pole)
         return contours.inverted(integrand, contour, times, self.problem.settings.steady_truncation)
+
+
+class _OnVerticalLines(_Inversion):
+    """The inversion on one level, by rational fits on vertical lines but at the end.
+
+    Parameters
+    ----------
+    tol : float
+    problem, times, saddles, level, known, wanted
+        As for `_Inversion`.
+    """
+
+    def __init__(self, tol: float, *of_level):
+        super().__init__(*of_level)
+        self.tol = tol
+
+    def _windows_of_later(self, begin, end):
+        """One window from where the probability is no longer small."""
+        risen = np.log(tuning.SADDLE_POINTS.risen)
+        first = max(begin, int(np.searchsorted(self.saddles.bound, risen)))
+        return [(slice(first, end), None)] if first < end else []
+
+    def _rise(self, begin, end):
+        """Solve windows in which the probability is still small, the last first."""
+        settings, bounds = self.problem.settings, np.exp(self.saddles.bound)
+        growth = tuning.VERTICAL_LINES.growth if settings.relative else np.inf
+        negligible = begin
+        for here in reversed(list(_windows(begin, end, (bounds, growth)))):
+            last = here.stop - 1
+            size = 1.0 if settings.relative else bounds[last]
+            self._on_line(here, self.saddles.place[last], self.tol / size, rising=True)
+            # if the probability is negligible here, although its bound is not, it is so before
+            if (
+                abs(self.found[0, here.start])
+                < tuning.INVERSION.surely * settings.least_probability
+            ):
+                negligible = here.start
+                break
+        self._store(slice(negligible), np.zeros(negligible))
+
+    def _later(self, windows):
+        """Solve the window after the rise."""
+        for here, _ in windows:
+            self._on_line(here, 1 / self.times[here.stop - 1], self.tol, rising=False)
+
+    def _on_line(self, here, abscissa, tol, rising):
+        """Fit F on a line, unless this is not wanted, and invert it."""
+        if not self.wanted[here].any():
+            return
+        settings, saddles = tuning.VERTICAL_LINES, self.saddles
+        turn = self.problem.settings.levels.index(self.level) % 2
+        best = settings.rising if rising else settings.best
+        accuracy = max(best, settings.accuracy * tol)
+        parts, fronts = self.problem.parts(
+            self.level.resolution, self.times[here], -saddles.bound[here][0]
+        )
+        values = np.zeros(here.stop - here.start)
+        if self.times[here.stop - 1] > fronts.min():
+            begun = saddles.begin(abscissa, settings.negligible * min(accuracy, 1.0))
+            values = vertical_lines.inverted(
+                parts,
+                abscissa,
+                np.maximum(fronts, begun),
+                accuracy,
+                rising,
+                offset=turn / 2,
+            ).at(self.times[here])
+        self._store(here, values)
 
 
 def _of_probability(transform):

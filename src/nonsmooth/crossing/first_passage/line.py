@@ -8,7 +8,7 @@ import numpy as np
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import ContourSettings, LaplaceProblem
 from nonsmooth.kinetic import tail_equation
-from nonsmooth.kinetic.case_modes import first_passage, waves
+from nonsmooth.kinetic.case_modes import by_exit, first_passage, waves
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.tail_descent import Tail
 from nonsmooth.scenes.scene import Scene
@@ -42,11 +42,40 @@ class LineProblem(LaplaceProblem):
         reach = self._reach(times[-1], rarity)
         return self._on_grid(resolution, times[0], reach, tuning.LINE_GRIDS.depth + rarity)
 
+    @property
+    def on_vertical_lines(self) -> bool:
+        """Whether F is inverted on vertical lines: always, see `LaplaceProblem`."""
+        return True
+
+    def parts(
+        self, resolution: int, times: np.ndarray, rarity: float
+    ) -> tuple[Callable[[complex], np.ndarray], np.ndarray]:
+        """Parts of F by the wall through which paths leave; see `LaplaceProblem`.
+
+        No path is there before g has been as large as it can be all the time.
+        """
+        grid = self._grid(
+            resolution,
+            times[0],
+            self._reach(times[-1], rarity),
+            tuning.LINE_GRIDS.depth + rarity,
+        )
+        fastest = np.array([np.max(grid.g), -np.min(grid.g)])
+        if grid.mirrored:
+            fastest = np.full(2, fastest.max())
+        distances = np.array([self.upper, -self.lower])
+        fronts = np.divide(distances, fastest, out=np.zeros(2), where=fastest > 0)
+        fronts[np.isinf(fronts)] = 0.0  # nothing leaves there
+        return lambda z: by_exit(grid, z, self.lower, self.upper), fronts
+
     def _on_grid(self, degree, time, reach, depth):
-        grid = ordinates(
+        grid = self._grid(degree, time, reach, depth)
+        return lambda z: first_passage(grid, z, self.lower, self.upper)
+
+    def _grid(self, degree, time, reach, depth):
+        return ordinates(
             self.scene, degree, time, reach, depth, distances=(-self.lower, self.upper)
         )
-        return lambda z: first_passage(grid, z, self.lower, self.upper)
 
     def _reach(self, time, depth):
         """Return a change of velocity that is unlikely to be exceeded within a time.
@@ -75,6 +104,8 @@ class LineProblemFromAfar(LineProblem):
     def settings(self) -> ContourSettings:
         """How accurate the problem is, and its levels."""
         return tuning.LINE_FROM_AFAR
+
+    parts = LaplaceProblem.parts
 
     def _on_grid(self, degree, time, reach, depth):
         tail = self.tail

@@ -162,7 +162,7 @@ def inverted(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.n
         Takes the resolutions of the grid, driven and other variable, of the basis and of the
         contour; returns probability and survival probability, shape (2, k).
     """
-    solve, count = contour_solver(problem, times), len(times)
+    solve, count = contour_solver(problem, times, 0.0), len(times)
     nothing, every = np.array([np.zeros(count), np.ones(count)]), np.full(count, True)
 
     def solved(resolution):

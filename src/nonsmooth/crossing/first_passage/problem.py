@@ -148,6 +148,30 @@ class LaplaceProblem(FirstPassageProblem):
     def settings(self) -> ContourSettings:
         """How accurate the problem is, and its levels."""
 
+    @property
+    def on_vertical_lines(self) -> bool:
+        """Whether F is inverted on vertical lines, because contours that bend come near poles."""
+        return False
+
+    def parts(
+        self, resolution: Any, times: np.ndarray, rarity: float
+    ) -> tuple[Callable[[complex], np.ndarray], np.ndarray]:
+        """Parts of F and the times before which they contribute nothing, for vertical lines.
+
+        Parameters
+        ----------
+        resolution, times, rarity
+            As for `transform`.
+
+        Returns
+        -------
+        parts : callable
+            Takes z, returns values of the sum F(z), shape (m,).
+        fronts : numpy.ndarray, shape (m,)
+        """
+        transform = self.transform(resolution, times, rarity)
+        return lambda z: np.array([transform(z)]), np.zeros(1)
+
     @abstractmethod
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
         """Return F on a coarse grid, good to a few digits, for the choice of contours.

@@ -33,6 +33,8 @@ class SaddlePoints:
         Angle to the vertical of the arms of a contour through it.
     early, steady : numpy.ndarray of bool, shape (k,)
         Whether a hyperbola of that kind serves: the probability is not small, and F grows little.
+    axis : tuple of numpy.ndarray, shape (f,)
+        Places on the axis, and log F there.
     """
 
     place: np.ndarray
@@ -41,6 +43,17 @@ class SaddlePoints:
     tilt: np.ndarray
     early: np.ndarray
     steady: np.ndarray
+    axis: tuple[np.ndarray, np.ndarray]
+
+    def begin(self, abscissa: float, share: float) -> float:
+        """Time before which only a share of F, at a place on the axis, has arisen; at least 0.
+
+        This is Chernoff's bound for the law of tau with the density exp(-z tau) / F(z).
+        """
+        z, log_F = self.axis
+        right = z > abscissa
+        fallen = np.interp(abscissa, z, log_F) - log_F[right]
+        return float(np.max((np.log(share) + fallen) / (z[right] - abscissa), initial=0.0))
 
 
 def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
@@ -62,7 +75,7 @@ def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
     if len(log_F) < 2:
         nothing = np.zeros(len(times))
         bound, fits = nothing + np.log(problem.settings.least_transform), nothing == 0
-        return SaddlePoints(nothing, nothing, bound, nothing, fits, fits)
+        return SaddlePoints(nothing, nothing, bound, nothing, fits, fits, (np.exp(log_z), log_F))
     axis = _axis(log_z, log_F, growth)
     place, width, bound, tilt, early, steady = zip(*(axis.at(t) for t in times), strict=True)
     return SaddlePoints(
@@ -72,12 +85,17 @@ def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
         np.array(tilt),
         np.array(early),
         np.array(steady),
+        (axis.z, axis.log_F),
     )
 
 
 def _samples(problem, times):
-    """Sample log F on the axis and log |F| on the rays, at the same |z|, until F is rounding."""
+    """Sample log F on the axis and log |F| on the rays, at the same |z|, until F is rounding.
+
+    Problems that are inverted on vertical lines need no rays.
+    """
     settings = tuning.SADDLE_POINTS
+    angles = () if problem.on_vertical_lines else settings.angles
     first, last = np.log([settings.first / times[-1], settings.largest / times[0]])
     log_z = np.arange(first, last + settings.spacing, settings.spacing)
     log_F: list[float] = []
@@ -90,9 +108,7 @@ def _samples(problem, times):
         if value < problem.settings.least_transform:
             break
         log_F.append(np.log(value))
-        growth.append(
-            [_size(transform, z * np.exp(1j * (np.pi / 2 + angle))) for angle in settings.angles]
-        )
+        growth.append([_size(transform, z * np.exp(1j * (np.pi / 2 + angle))) for angle in angles])
     return log_z[: len(log_F)], np.array(log_F), np.array(growth)
 
 
@@ -171,6 +187,7 @@ class _Axis:
         Only radii above the least one are examined, as far out as exp(z t) is not negligible.
         """
         settings = tuning.SADDLE_POINTS
+        rays = min(rays, self.growth.shape[1])
         fall = self.radii[:, None] * t * np.sin(settings.angles[:rays])
         seen = (self.radii[:, None] > least) & (fall < settings.negligibly)
         return np.all((self.growth[:, :rays] <= settings.harmless + share * fall)[seen])

@@ -88,6 +88,28 @@ class Inversion:
 
 
 @dataclass(frozen=True)
+class VerticalLines:
+    """Rational fits on vertical lines."""
+
+    step: float = 1.44  # chosen: ratio of heights; places in between are sampled to check the fit
+    first: float = 0.1  # chosen: least height, times the mean duration
+    least: float = 1e-12  # derived: rounding of 1 - F
+    beyond: int = 2  # chosen: so many samples in a row must be negligible
+    far: tuple[float, ...] = (2.0, 4.0, 8.0, 30.0, 100.0)  # chosen: heights at which F is 0
+    falls: float = 0.5  # chosen: more samples must make the error at least so much smaller
+    most: int = 250  # chosen: number of samples from which no more are added
+    terms: int = 100  # chosen: largest number of terms of a fit
+    rounding: float = 1e-14  # derived: relative size of singular values that are rounding
+    phase: float = 1e-14  # derived: rounding of exp(-z t_0) is so many times |z| t_0
+    share: float = 0.1  # chosen: a fit is made so much better than it has to be
+    accuracy: float = 0.1  # chosen: of a fit, over the tolerance, ...
+    best: float = 1e-10  # chosen: ... and the best, above rounding, ...
+    rising: float = 1e-7  # chosen: ... also in the rise, where F is rounded more
+    negligible: float = 0.1  # chosen: a share of F below so much of the accuracy counts as none
+    growth: float = 1e4  # chosen: largest growth of the probability's bound on a line of the rise
+
+
+@dataclass(frozen=True)
 class Refinement:
     """The error, from the differences of levels."""
 
@@ -226,6 +248,7 @@ class TimeStepping:
 CONTOURS = Contours()
 SADDLE_POINTS = SaddlePoints()
 INVERSION = Inversion()
+VERTICAL_LINES = VerticalLines()
 REFINEMENT = Refinement()
 LINE_GRIDS = LineGrids()
 FAR_START = FarStart()

@@ -164,3 +164,33 @@ class TestDeterministic:
         transform = simpson(2 * np.exp(-2 * fine + spline(np.log(fine))), x=fine)
         expected = first_passage(ordinates(FRICTION, 13, 0.1), 2.0, -0.6, 0.6).real
         assert transform == pytest.approx(expected, rel=1e-5)
+
+    @pytest.mark.parametrize(
+        ("scene", "threshold"),
+        [
+            (
+                ns.Scene(
+                    "friction",
+                    n=1,
+                    damping=0.257,
+                    noise=ns.White(1.91),
+                    observable="tanh(y)",
+                    start={"y": 0.973},
+                ),
+                (-0.6, 0.8),
+            ),
+            (ns.Scene("friction", observable="friction_force"), 0.6),
+            (ns.Scene("friction", n=np.inf, observable="max(abs(y) - 0.5, 0)*sign(y)"), 0.2),
+        ],
+    )
+    def test_fronts_and_flat_parts(self, scene, threshold):
+        """A bounded g reaches the threshold at a time all at once; a flat one stands still.
+
+        Monte Carlo agrees; false alarms 1e-5.
+        """
+        horizons = [0.7, 1.0, 2.0]
+        sample = ns.crossing_probability(scene, threshold, horizons, 1, paths=20_000, step=0.02)
+        found = exact(threshold, horizons, 1, scene, tol=1e-6)
+        bias = np.abs(sample.step_bias) + 3 * sample.step_bias_error
+        gap = np.abs(sample.probability - found.probability)
+        assert np.all(gap < 4.5 * sample.standard_error + bias)
