@@ -22,7 +22,13 @@ from nonsmooth.line import eigenfunctions
 
 ODD = ("y", "y + {a}*sin(2*y)", "y*(1 + {a}*y**2/(1 + y**2))", "y + {a}*y**3/(1 + y**2)")
 OTHER = ("y + {a}*abs(y)", "y + {a}*sin(y)**2", "y + {a}*cos(2*y)", "y + {a}*y**2/(1 + y**2)")
-BOUNDED = ("tanh({a}*y)", "friction_force", "sin(y) + {a}*y", "tanh(y) + {a}*cos(y)", "y**2 - {a}")
+BOUNDED = (
+    "tanh({a}*y)",
+    "min(max(9*{a}*y, -1), 1)",
+    "sin(y) + {a}*y",
+    "tanh(y) + {a}*cos(y)",
+    "y**2 - {a}",
+)
 CLASSES = {"odd": (ODD, 40), "other": (OTHER, 24), "bounded": (BOUNDED, 30)}
 HORIZONS = np.geomspace(0.01, 100, 25)
 PROBED = (1e-4, 0.05, 0.7)  # probabilities near which a curve is checked
