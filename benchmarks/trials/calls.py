@@ -41,6 +41,7 @@ import xarray as xr
 
 import nonsmooth as ns
 from benchmarks.trials import odd_values
+from nonsmooth import dimensions
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.paths import tuning
 
@@ -52,11 +53,15 @@ PATIENCE = 20  # times as long may a call take that waits for the processor
 WORKERS = 2
 LONGEST_MESSAGE = 300
 MEMORY = 8 * 2**30  # bytes of address space of a worker, so that none takes the whole machine
-SIGNED = ("ns.mean(", "ns.extrapolation_length(")  # functions whose estimates may be negative
+# functions whose estimates may be negative
+SIGNED = "ns.mean(", "ns.extrapolation_length(", "ns.asymptotic_variance_sensitivity("
+# functions whose limits and errors are infinite where nothing is known
+OPEN = "ns.crossing_threshold(", "ns.failure_time(", "ns.hazard_rate(", "ns.reliability_index("
 WELL = ("fine", "refused", "long")
 
 NAMES = {
     "ns": ns,
+    "dimensions": dimensions,
     "np": np,
     "xr": xr,
     "sympy": sympy,
@@ -70,7 +75,10 @@ NAMES = {
 
 def written(function: str, arguments: dict[str, str]) -> str:
     """Write a call as Python, so that it can be repeated by hand."""
-    return f"ns.{function}({', '.join(f'{name}={value}' for name, value in arguments.items())})"
+    function = function.partition(" ")[0]
+    module = "" if function.startswith("dimensions.") else "ns."
+    given = ", ".join(f"{name}={value}" for name, value in arguments.items())
+    return f"{module}{function}({given})"
 
 
 def single_calls() -> list[str]:
@@ -138,6 +146,8 @@ def judged(call: str) -> dict:
             outcome, told, place = "long" if legal else "too slow", "no answer", _place(error)
         except Exception as error:
             outcome, told, place = "raised", f"{type(error).__name__}: {error}", _place(error)
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
     unwanted = [w for w in warned if not issubclass(w.category, AssumptionWarning)]
     if unwanted and outcome in WELL:
         first = unwanted[0]
@@ -162,14 +172,15 @@ def _place(error):
 
 
 def _of_result(call, result):
-    wrong = nonsense(result, signed=call.startswith(SIGNED))
+    wrong = nonsense(result, call.startswith(SIGNED), call.startswith(OPEN))
     return ("nonsense", wrong, call.partition("(")[0]) if wrong else ("fine", "", "")
 
 
-def nonsense(result: object, signed: bool = False) -> str:
+def nonsense(result: object, signed: bool = False, infinite: bool = False) -> str:
     """Say what is wrong with a result; nothing if it makes sense.
 
-    An estimate may be negative only if it is `signed`.
+    An estimate may be negative only if it is `signed`, and numbers may be infinite only if that is
+    said.
     """
     if isinstance(result, ns.Estimate):
         checks = {
@@ -184,8 +195,9 @@ def nonsense(result: object, signed: bool = False) -> str:
         return ""
     for name, (values, least, most) in checks.items():
         values = np.asarray(values, dtype=float)
-        if not np.all(np.isfinite(values)):
-            return f"{name} = {values.ravel()[~np.isfinite(values.ravel())][0]}"
+        known = ~np.isnan(values) if infinite else np.isfinite(values)
+        if not np.all(known):
+            return f"{name} = {values[~known].ravel()[0]}"
         if np.any(values < least) or np.any(values > most):
             return f"{name} = {values!r}"[:200]
     return ""
@@ -197,8 +209,12 @@ def _range(dataset, name):
     error = np.max(dataset[f"{name}_error"].values) if f"{name}_error" in dataset else 0.0
     if name.endswith("_error"):
         return values, 0.0, np.inf
-    if name in ("probability", "survival", "lower", "upper"):
+    if name in ("probability", "survival"):
         return values, -error, 1 + error
+    if name in ("lower", "upper") and "probability" in dataset.data_vars:
+        return values, 0.0, 1.0
+    if name in ("threshold", "time", "hazard_rate"):
+        return values, 0.0, np.inf
     if name in ("v", "variance") or (name.startswith("density_")):
         return values, -error, np.inf
     return values, -np.inf, np.inf

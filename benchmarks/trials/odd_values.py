@@ -2,8 +2,12 @@
 
 _FRICTION = 'ns.Scene("friction")'
 _YIELDING = 'ns.Scene("elasto_plastic", potential="x**2/2")'
+_STRUCTURE = "dimensions.Structure('friction',1.0,1.0,1.0,1.0)"
+_COUNTED = {"method": '"monte_carlo"', "tol": "0.1", "step": "0.05", "paths": "1000"}
+_COUNTED |= {"seed": "1", "threads": "1"}
 
-# a valid and cheap call of every function that takes arguments
+# valid and cheap calls of every function that takes arguments; what follows a blank tells those of
+# one function apart
 VALID: dict[str, dict[str, str]] = {
     "Scene": {
         "model": '"obstacle"',
@@ -73,7 +77,87 @@ VALID: dict[str, dict[str, str]] = {
         "precision": '"float64"',
         "threads": "1",
         "order": "None",
+        "envelope": "None",
     },
+    "crossing_probability by importance_sampling": {
+        "scene": _FRICTION,
+        "threshold": "0.5",
+        "horizons": "[0.5, 1.0]",
+        "p": "1.0",
+        **_COUNTED,
+        "method": '"importance_sampling"',
+    },
+    "state_crossing_probability": {
+        "scene": _FRICTION,
+        "variable": '"y"',
+        "threshold": "1.0",
+        "horizons": "[0.5, 1.0]",
+        **_COUNTED,
+        "precision": '"float64"',
+        "envelope": '"1"',
+    },
+    "crossing_threshold": {
+        "scene": _FRICTION,
+        "probability": "[0.5, 0.3]",
+        "horizons": "[0.5, 1.0]",
+        "p": "1.0",
+        "sides": '"both"',
+        **_COUNTED,
+        "order": "None",
+    },
+    "failure_time": {
+        "scene": _FRICTION,
+        "threshold": "0.2",
+        "probability": "[0.3, 0.5]",
+        "p": "1.0",
+        **_COUNTED,
+        "order": "None",
+    },
+    "mean_time_to_failure": {
+        "scene": _FRICTION,
+        "threshold": "0.2",
+        "p": "1.0",
+        **_COUNTED,
+    },
+    "hazard_rate": {
+        "scene": _FRICTION,
+        "threshold": "0.2",
+        "horizons": "[0.5, 1.0]",
+        "p": "1.0",
+        **_COUNTED,
+        "order": "None",
+    },
+    "reliability_index": {
+        "crossing": f"ns.crossing_probability({_FRICTION}, 0.5, [1.0], method='asymptotic')"
+    },
+    "asymptotic_variance_sensitivity": {
+        "scene": _FRICTION,
+        "parameter": '"damping"',
+        "tol": "0.1",
+    },
+    "crossing_sensitivity": {
+        "scene": _FRICTION,
+        "threshold": "0.5",
+        "horizons": "[0.5, 1.0]",
+        "parameter": '"damping"',
+        "p": "1.0",
+        "method": '"monte_carlo"',
+        "tol": "0.3",
+        "seed": "1",
+        "threads": "1",
+    },
+    "plot": {"result": "ns.Estimate(1.0, 0.1, 'quadrature', 0.0)"},
+    "dimensions.Structure": {
+        "model": '"obstacle"',
+        "mass": "1.0",
+        "damping": "1.0",
+        "limit": "1.0",
+        "spectral_density": "1.0",
+        "stiffness": "1.0",
+        "ground_frequency": "1.0",
+        "ground_damping": "0.5",
+    },
+    f"{_STRUCTURE}.scene": {"observable": '"y"', "n": "100"},
     "brownian_crossing": {"b": "1.0", "T": "[0.5, 1.0]", "lower": "-2.0"},
     "brownian_survival": {"b": "1.0", "T": "[0.5, 1.0]", "lower": "-2.0"},
     "brownian_first_passage_density": {"b": "1.0", "T": "[0.5, 1.0]", "lower": "-2.0"},
@@ -153,6 +237,27 @@ _LEVELS = (
     *("(-1.0, 1e300)", "(None, 1.0)", "((-1.0, 1.0),)", "np.array([-0.1, 0.1])"),
 )
 
+_RESULTS = (
+    f"ns.variance({_FRICTION}, [1.0])",
+    f"ns.simulate({_FRICTION}, 1.0, step=0.1, paths=8, keep='paths', seed=1)",
+    f"ns.simulate({_FRICTION}, 1.0, step=0.1, paths=8, keep='paths', seed=1)['y']",
+    f"ns.crossing_probability({_FRICTION}, 0.5, [1.0], method='asymptotic').isel(horizon=0)",
+    f"ns.crossing_probability({_FRICTION}, 0.5, [1.0], method='asymptotic') * np.nan",
+    f"ns.crossing_probability({_FRICTION}, 0.5, [1.0], method='asymptotic') + 1",
+    f"ns.crossing_probability({_FRICTION}, [0.5, 1.0], [1.0, 2.0], method='asymptotic')",
+    f"ns.invariant_density({_YIELDING}, tol=0.1)",
+    "xr.Dataset()",
+    "xr.Dataset({'probability': 0.5, 'probability_error': 0.1})",
+    "xr.Dataset({k: 'a' for k in ('probability', 'probability_error', 'lower', 'upper')})",
+    "xr.Dataset({k: 0.5j for k in ('probability', 'probability_error', 'lower', 'upper')})",
+    "xr.Dataset({k: ('t', []) for k in ('probability', 'probability_error', 'lower', 'upper')})",
+    "xr.DataArray(np.zeros((2, 2, 2)))",
+    "xr.DataArray(['a', 'b'], dims='t', coords={'t': ['c', 'd']}, name='v')",
+    "{'a': ns.Estimate(1.0, nan, 'quadrature', 0.0), 'b': ns.Estimate(inf, 0.1, '', 0.0)}",
+    f"{{'a': ns.Estimate(1.0, 0.1, '', 0.0), 'b': ns.variance({_FRICTION}, [1.0])}}",
+    "{1: ns.Estimate(1.0, 0.1, '', 0.0), 'b': ns.Estimate(1.0, 0.1, '', 0.0)}",
+    f"{{'$x': ns.variance({_FRICTION}, [1.0]), None: ns.variance({_FRICTION}, [1.0, 2.0])}}",
+)
 # in addition, by the name of the argument
 SPECIAL: dict[str, tuple[str, ...]] = {
     "scene": _SCENES,
@@ -190,6 +295,16 @@ SPECIAL: dict[str, tuple[str, ...]] = {
         *("'deterministic'", "'asymptotic'", "'corrected'", "'Monte_Carlo'", "'monte carlo'"),
         *("['monte_carlo']", "'montecarlo'", "('deterministic',)"),
     ),
+    "variable": ("'x'", "'eta'", "'zeta'", "'z'", "'Y'", "['y']"),
+    "parameter": ("'n'", "'sigma'", "'threshold'", "'p'", "'theta'", "'Damping'", "['n']"),
+    "sides": ("'upper'", "'lower'", "'Both'", "['both']"),
+    "probability": ("1e-9", "1 - 1e-9", "[0.5, 0.5]", "[0.9, 0.1]", "[1e-300]", "[0.5, 1.0]"),
+    "envelope": (
+        *("'t'", "'-t'", "'t - 0.5'", "'1/t'", "'exp(1e3*t)'", "'1e-30'", "'0'", "'sin(1e9*t)'"),
+        *("'y'", "'sqrt(-t)'", "'t**-0.4'", "'log(t)'", "'t; 1'", "'nan'", "'9**9**9*t'"),
+    ),
+    "crossing": _RESULTS,
+    "result": _RESULTS,
     "keep": ("'paths'", "'path'", "['paths']"),
     "scheme": (
         "'lie'",
@@ -209,7 +324,7 @@ SPECIAL: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(
         (
             *("n", "damping", "sigma", "theta", "stiffness", "tol", "horizon", "step", "p", "b"),
-            *("lower"),
+            *("lower", "mass", "limit", "spectral_density", "ground_frequency", "ground_damping"),
         ),
         _NUMBERS,
     ),
@@ -284,6 +399,14 @@ SCENES = (
     "ns.Scene('friction', noise=ns.Hamiltonian('eta**4 + zeta**2/2', '1 + eta**2'))",
     "ns.Scene('obstacle', noise='hamiltonian', potential='x**2/2', observable='x', n=inf)",
     "ns.Scene('elasto_plastic', noise='langevin', potential='x**4/4', n=1e6)",
+    *(
+        f"dimensions.Structure({arguments}).scene()"
+        for arguments in (
+            *("'friction', 1e20, 1, 1, 1", "'obstacle', 1, 1e-20, 1e10, 1, 1e20"),
+            *("'elasto_plastic', 1, 1e-30, 1e30, 1e-30, 1", "'friction', 1e-30, 1e30, 1e30, 1e30"),
+            "'obstacle', 1, 1, 1, 1, 1, 1e25, 1e-25",
+        )
+    ),
 )
 
 # what is asked of each of them
@@ -303,5 +426,19 @@ QUESTIONS: tuple[tuple[str, dict[str, str]], ...] = (
     ),
     ("crossing_probability", {"threshold": "0.5", "horizons": "[1.0]", "method": '"asymptotic"'}),
     ("crossing_probability", {"threshold": "0.5", "horizons": "[1.0]", "method": '"corrected"'}),
+    (
+        "crossing_probability",
+        {"threshold": "3.0", "horizons": "[1.0]", "method": '"importance_sampling"', "tol": "0.1"},
+    ),
     ("extrapolation_length", {"tol": "0.1"}),
+    ("state_crossing_probability", {"variable": '"y"', "threshold": "1.0", "horizons": "[1.0]"}),
+    ("crossing_threshold", {"probability": "0.5", "horizons": "[1.0]", "tol": "0.1"}),
+    ("failure_time", {"threshold": "0.5", "tol": "0.1"}),
+    ("mean_time_to_failure", {"threshold": "0.5", "tol": "0.1"}),
+    ("hazard_rate", {"threshold": "0.5", "horizons": "[1.0]", "tol": "0.1"}),
+    ("asymptotic_variance_sensitivity", {"parameter": '"damping"', "tol": "0.1"}),
+    (
+        "crossing_sensitivity",
+        {"threshold": "0.5", "horizons": "[1.0]", "parameter": '"damping"', "tol": "0.3"},
+    ),
 )

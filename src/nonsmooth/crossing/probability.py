@@ -6,9 +6,10 @@ A threshold is a number b, for both sides, or a pair (lower, upper); there may b
 """
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -160,11 +161,9 @@ def crossing_probability(
     thresholds, several = intervals(threshold)
     horizons = require_increasing("horizons", horizons)
     p = require_positive("p", p)
-    method = None if method is None else require_choice("method", method, METHODS)
     seed, threads = require_seed(seed), require_threads(threads)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision, "order": order}
-    options["envelope"] = envelope
-    given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
+    given = require_options(method, options | {"envelope": envelope})
     attempts = (
         _attempts(scene, thresholds, horizons, p, given) if method is None else [(method, {})]
     )
@@ -187,6 +186,27 @@ def crossing_probability(
         return result if several else result.isel(threshold=0, drop=True)
 
     return answered(solve, present, tol_given=tol is not None)
+
+
+def require_options(method: str | None, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return those parameters of a method that are given.
+
+    Parameters
+    ----------
+    method : str or None
+        As for `crossing_probability`.
+    options : mapping
+        Parameters that only some methods have; what is None is not given.
+
+    Raises
+    ------
+    SceneError
+        If there is no such method, it has no such parameter, or that is out of range.
+    """
+    given = {name: _OPTIONS[name](value) for name, value in options.items() if value is not None}
+    if method is not None:
+        _by(require_choice("method", method, METHODS), given)
+    return given
 
 
 def _coordinates(thresholds):

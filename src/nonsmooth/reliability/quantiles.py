@@ -15,10 +15,9 @@ from nonsmooth.checks import (
     require_positive,
     require_seed,
     require_threads,
-    require_tolerance,
 )
 from nonsmooth.crossing.first_passage.distribution import default_tolerance
-from nonsmooth.crossing.probability import crossing_probability
+from nonsmooth.crossing.probability import crossing_probability, require_options
 from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.reliability import tuning
@@ -206,7 +205,8 @@ class _Question:
     def __init__(self, scene: Scene, given: dict, tol: float | None):
         self._scene = scene
         self._given: dict[str, Any] = {k: v for k, v in given.items() if v is not None}
-        self._tol = None if tol is None else require_tolerance(tol)
+        options = {name: given[name] for name in ("step", "paths", "order")}
+        self._tol = require_options(given["method"], options | {"tol": tol}).get("tol")
         self._refusal: str | None = None
         self.attributes: dict = {}
 
@@ -235,7 +235,9 @@ class _Question:
 
     def _is_sampled(self):
         given = self._given
-        return given.get("method") == "monte_carlo" or bool({"step", "paths"} & given.keys())
+        if "method" in given:
+            return given["method"] == "monte_carlo"
+        return "order" not in given and bool({"step", "paths"} & given.keys())
 
     def roots(
         self,
@@ -252,14 +254,13 @@ class _Question:
         """
         tol = self.tolerance(targets)
         sampled = self._is_sampled()
-        if not sampled and "method" not in self._given:  # the method follows from the scene
-            sampled = (
+        if not sampled and not {"method", "order"} & self._given.keys():
+            sampled = (  # the method follows from the scene
                 default_tolerance(self._scene) is None
                 or curve(0, np.array(guesses[:1]), tol).attrs["method"] == "monte_carlo"
             )
         if sampled:
             self._given["method"] = "monte_carlo"
-            self._given.pop("order", None)
             found = _on_grids(curves, targets, guesses, sense, tol)
         else:
             found = [
