@@ -378,6 +378,7 @@ def _limit_theorem(topic, sweep):
     seconds = 0.0
     for name in topic["scenes"]:
         entry = sweep["scenes"][name]
+        sizes["sweep", "scenes", name, "long_step"] = 1 / entry["long_step"]
         dimension = scene_of(entry["scene"]).dimension
         seconds += JOB_SECONDS + _simulated(dimension, topic["paths"], short, topic["step"])
         rest = max(topic["p"]) - short

@@ -21,28 +21,35 @@ import scipy.sparse.linalg as spla
 from sympy import Symbol
 
 from nonsmooth.errors import ToleranceError
+from nonsmooth.grids import tuning
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.progress import fulfil
 from nonsmooth.scenes.scene import Scene
 
-_CLOSING = 1.0  # seconds that the end of the program waits for factors to be freed
-
 
 class _Workshop:
-    """A thread that does one task after the other."""
+    """A thread that makes factors, keeps them, and frees them; one task after the other.
+
+    Attributes
+    ----------
+    kept : dict
+        The factors by keys of their owners.
+    """
 
     def __init__(self) -> None:
-        self._tasks: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        threading.Thread(target=self._work, daemon=True).start()
+        self.kept: dict[object, spla.SuperLU] = {}
+        self._tasks: queue.SimpleQueue[Callable[[], object] | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._work, daemon=True)
+        self._thread.start()
         atexit.register(self._close)
 
     def _work(self):
-        while True:
-            self._tasks.get()()
+        while (task := self._tasks.get()) is not None:
+            task()
 
-    def put(self, task: Callable[[], None]) -> None:
+    def put(self, task: Callable[[], object]) -> None:
         """Do a task later."""
         self._tasks.put(task)
 
@@ -50,12 +57,15 @@ class _Workshop:
         """Let the thread go on with what nobody waits for any more."""
         atexit.unregister(self._close)
 
+    def is_open(self) -> bool:
+        """Whether the thread is there; a forked process has no threads but its own."""
+        return self._thread.is_alive()
+
     def _close(self):
-        for factors in SparseFactors.alive:
-            factors.free()
-        done = threading.Event()
-        self.put(done.set)
-        done.wait(_CLOSING)
+        """Free all, or the program ends with an error of scipy's and the exit code 120."""
+        self._tasks.put(self.kept.clear)
+        self._tasks.put(None)
+        self._thread.join(tuning.TENSOR_GRIDS.to_close)
 
 
 class SparseFactors:
@@ -71,18 +81,18 @@ class SparseFactors:
         If the memory does not hold the factors.
     """
 
-    alive: ClassVar[weakref.WeakSet["SparseFactors"]] = weakref.WeakSet()
     _workshop: ClassVar[_Workshop | None] = None
 
     def __init__(self, matrix: sp.sparray):
-        self._made: list[spla.SuperLU] = []
-        workshop = SparseFactors._workshop = SparseFactors._workshop or _Workshop()
+        workshop = SparseFactors._workshop
+        if workshop is None or not workshop.is_open():
+            workshop = SparseFactors._workshop = _Workshop()
+        self._kept, self._key = workshop.kept, object()
         done: Future = Future()
-        workshop.put(partial(fulfil, done, partial(_factorise, matrix, self._made)))
-        # the task must not refer to this object, or it would never be freed
-        self.free = weakref.finalize(self, workshop.put, self._made.clear)
-        self.free.atexit = False  # the workshop closes earlier
-        SparseFactors.alive.add(self)
+        # tasks must not refer to this object, or it would never be freed
+        workshop.put(partial(fulfil, done, partial(_factorise, matrix, self._kept, self._key)))
+        free = partial(self._kept.pop, self._key, None)
+        weakref.finalize(self, workshop.put, free).atexit = False
         try:
             done.result()
         except MemoryError:
@@ -97,17 +107,15 @@ class SparseFactors:
 
     def solve(self, right: np.ndarray, trans: str = "N") -> np.ndarray:
         """Solve with the matrix, or with its transpose if `trans` is "T"."""
-        return self._made[0].solve(right, trans=trans)
+        return self._kept[self._key].solve(right, trans=trans)
 
 
-def _factorise(matrix, made):
-    made.append(
-        spla.splu(
-            matrix.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=1e-3,
-            options={"SymmetricMode": True},
-        )
+def _factorise(matrix, kept, key):
+    kept[key] = spla.splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=1e-3,
+        options={"SymmetricMode": True},
     )
 
 

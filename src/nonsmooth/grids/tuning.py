@@ -83,6 +83,8 @@ class TensorGrids:
     largest: Mapping[int, int] = field(
         default_factory=lambda: {2: 120_000, 3: 600_000, 4: 2_500_000}
     )
+    # chosen: seconds that a program waits at its end until sparse factors are freed
+    to_close: float = 1.0
 
 
 @dataclass(frozen=True)

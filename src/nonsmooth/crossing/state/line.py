@@ -100,7 +100,10 @@ def _edges(asked, phi, knot, first_time):
     deepest = settings.depth + float(phi(np.array(asked.start)))
     ends = []
     for level, side in ((asked.lower, -1), (asked.upper, 1)):
-        reach = side * abs(asked.start) + side * settings.first_reach * sigma
+        start = side * abs(asked.start)
+        reach = start + side * settings.first_reach * sigma
+        while phi(np.array(start + (reach - start) / settings.reach_step)) > deepest:
+            reach = start + (reach - start) / settings.reach_step
         while phi(np.array(reach)) < deepest and abs(reach) < abs(level):
             reach *= settings.reach_step
         ends.append(side * min(abs(level), abs(reach)))
@@ -116,7 +119,13 @@ def _edges(asked, phi, knot, first_time):
         edges.extend(level + towards * outward[outward < (upper - lower) / 2])
     edges = distinct(edges, settings.finest / 2 * (upper - lower))
     edges[[0, -1]] = lower, upper
-    parts = np.maximum(np.ceil(np.abs(np.diff(phi(edges))) / settings.steepest), 1).astype(int)
+    change = np.abs(np.diff(phi(edges)))
+    if change.sum() > settings.steepest * settings.most:
+        raise ToleranceError(
+            f"the potential of {asked.variable} changes by {change.sum():.1e} between the levels, "
+            "which elements do not resolve; use method='monte_carlo'"
+        )
+    parts = np.maximum(np.ceil(change / settings.steepest), 1).astype(int)
     return np.concatenate(
         [
             np.linspace(left, right, count + 1)[:-1]

@@ -19,6 +19,7 @@ class Line:
     )
     finest: float = 1e-4  # chosen: smallest element over the interval; smaller ones lose digits
     steepest: float = 4.0  # chosen: change of Phi over an element, at most
+    most: int = 100  # chosen: elements that such changes may ask for; then half a minute
     rounding: float = 0.02  # fitted: to values by closed forms, relative to eps degree^2 / width
     least: float = 1e-14  # derived: rounding of the sum over the modes
 
