@@ -16,6 +16,7 @@ from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
 from nonsmooth.line import quadrature
+from nonsmooth.linear_algebra import backward, cholesky, forward
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.scene import Scene
 
@@ -92,20 +93,17 @@ def _modes(grid: Ordinates, g: np.ndarray) -> _Modes:
     """
     rest = np.delete(np.arange(len(grid.g)), np.argmax(grid.masses))
     weights = grid.masses[rest] * g[rest]
-    factor = scipy.linalg.cholesky(grid.stiffness[EVEN][np.ix_(rest, rest)], lower=True)
-
-    def forward(values):
-        return scipy.linalg.solve_triangular(factor, values, lower=True)
+    factor = cholesky(grid.stiffness[EVEN][np.ix_(rest, rest)])
 
     def spread_out(values):
         """Functions on the whole grid, 0 at the node left out."""
         found = np.zeros((len(grid.g), *values.shape[1:]))
-        found[rest] = scipy.linalg.solve_triangular(factor, values, lower=True, trans="T")
+        found[rest] = backward(factor, values)
         return found
 
-    flux = forward(weights)
+    flux = forward(factor, weights)
     diffusion = flux @ flux
-    coupling = forward(forward(np.diag(weights)).T)
+    coupling = forward(factor, forward(factor, np.diag(weights)).T)
     complement = scipy.linalg.qr(flux[:, None])[0][:, 1:]
     inverses, vectors = np.linalg.eigh(complement.T @ coupling @ complement)
     vectors = complement @ vectors

@@ -14,6 +14,7 @@ from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
+from nonsmooth.linear_algebra import backward, cholesky, forward, svd
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.scene import Scene
 
@@ -104,23 +105,14 @@ def _milne(grid: Ordinates) -> _Milne:
     inner = slice(1, None)  # without the origin
     kept = np.flatnonzero(grid.g[inner])
     g, weights = grid.g[inner], grid.masses[inner]
-    odd, even = (
-        scipy.linalg.cholesky(grid.stiffness[parity][inner, inner], lower=True)
-        for parity in (ODD, EVEN)
-    )
-
-    def forward(factor, values):
-        return scipy.linalg.solve_triangular(factor, values, lower=True)
-
-    def backward(factor, values):
-        return scipy.linalg.solve_triangular(factor, values, lower=True, trans="T")
+    odd, even = (cholesky(grid.stiffness[parity][inner, inner]) for parity in (ODD, EVEN))
 
     flux = forward(odd, weights * g)
     u = backward(odd, flux)
     diffusion = flux @ flux
     coupling = forward(even, forward(odd, np.diag(weights * g)).T).T
     complement = scipy.linalg.qr(flux[:, None])[0][:, 1:]
-    left, inverses, right = scipy.linalg.svd(complement.T @ coupling, full_matrices=False)
+    left, inverses, right = svd(complement.T @ coupling)
     used = len(kept) - 1
     inverses = inverses[:used]
     odd_parts = backward(odd, complement @ left[:, :used])

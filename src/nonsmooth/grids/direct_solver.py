@@ -7,6 +7,7 @@ end of the program, too, which would otherwise report an error.
 """
 
 import atexit
+import os
 import queue
 import threading
 import weakref
@@ -44,6 +45,7 @@ class _Workshop:
         self._thread = threading.Thread(target=self._work, daemon=True)
         self._thread.start()
         atexit.register(self._close)
+        os.register_at_fork(before=self._settle)
 
     def _work(self):
         while (task := self._tasks.get()) is not None:
@@ -60,6 +62,13 @@ class _Workshop:
     def is_open(self) -> bool:
         """Whether the thread is there; a forked process has no threads but its own."""
         return self._thread.is_alive()
+
+    def _settle(self):
+        """Wait until what is dropped is freed: scipy's leftovers break a forked process."""
+        if self.is_open():
+            done = threading.Event()
+            self._tasks.put(done.set)
+            done.wait(tuning.TENSOR_GRIDS.to_close)
 
     def _close(self):
         """Free all, or the program ends with an error of scipy's and the exit code 120."""

@@ -73,6 +73,9 @@ def test_scenes_without_solver_are_sampled():
         (lambda: ns.crossing_threshold(FRICTION, 0.1, 2.0, sides="left"), "choose from both"),
         (lambda: ns.failure_time(FRICTION, -0.6), "threshold > 0"),
         (lambda: ns.failure_time(FRICTION, 0.6, "half"), "give numbers"),
+        (lambda: ns.failure_time(FRICTION, 0.6, method="counting", paths=100), "choose from"),
+        (lambda: ns.failure_time(FRICTION, 0.6, method="monte_carlo", order=2), "no parameter"),
+        (lambda: ns.crossing_threshold(FRICTION, 0.1, 2.0, step=0.1, order=1), "no parameter"),
     ],
 )
 def test_bad_requests_are_refused(ask, cure):

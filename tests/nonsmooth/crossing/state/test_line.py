@@ -104,3 +104,18 @@ def test_error_holds_on_random_scenes(k):
     )
     gap = np.abs(loose["probability"] - tight["probability"])
     assert np.all(gap <= loose["probability_error"] + tight["probability_error"])
+
+
+def test_a_level_far_in_the_tails_needs_no_elements():
+    """A stiff spring of y keeps it from 1: the probability is 0, and soon known."""
+    scene = ns.Scene("elasto_plastic", damping=1e6)
+    found = ns.state_crossing_probability(scene, "y", 1.0, [1.0, 10.0], tol=1e-8)
+    assert np.all(found["probability"] <= found["probability_error"])
+
+
+def test_a_potential_that_elements_do_not_resolve_is_refused():
+    """In one line, before matrices are made."""
+    noise = ns.Langevin("eta**4/4 - 100*eta**2/2", 0.1)
+    scene = ns.Scene("friction", noise=noise)
+    with pytest.raises(ns.NonsmoothError, match="use method='monte_carlo'"):
+        ns.state_crossing_probability(scene, "eta", 20.0, [1.0], method="deterministic")
