@@ -1,5 +1,6 @@
 """The studies that a run is asked for: files of the folder `studies`, or of the configuration."""
 
+import re
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
@@ -7,6 +8,8 @@ from pathlib import Path
 from reproduction.errors import ConfigError
 from studies.study import Study
 from workflow.dependencies import imported
+
+NAME = "[a-z0-9_]{1,100}"
 
 
 class Studies:
@@ -22,7 +25,9 @@ class Studies:
 
     def __init__(self, own: dict, folder: str) -> None:
         self.own, self.folder = own, Path(folder)
-        self.names = sorted(own or (path.stem for path in self.folder.glob("*.yaml")))
+        found = sorted(own or (path.stem for path in self.folder.glob("*.yaml")))
+        self.names = [name for name in found if re.fullmatch(NAME, name)]
+        self.misnamed = [name for name in found if name not in self.names]
         self.get = cache(self._get)
 
     def _get(self, name):
@@ -64,6 +69,11 @@ class Studies:
         ConfigError
             One line with the file, the key and the cure.
         """
+        targets = set(targets)
+        for name in self.misnamed:
+            if {"studies", f"study_{name}"} & targets:
+                cure = "rename it with lower-case letters, digits and underscores"
+                raise ConfigError(f"is no name of a study; {cure}", self.file(name))
         wanted = self.wanted(targets)
         if not wanted:
             return

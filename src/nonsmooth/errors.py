@@ -74,10 +74,15 @@ def answered(
     Raises
     ------
     ToleranceError
-        If the tolerance was asked for, or nothing is known.
+        If the tolerance was asked for, or nothing is known, or the memory is too small.
     """
     try:
         return present(solve())
+    except MemoryError:
+        raise ToleranceError(
+            "the memory does not hold what this takes; choose fewer paths or times or a larger "
+            "tol, or free memory"
+        ) from None
     except ToleranceError as refused:
         if refused.result is None:
             raise

@@ -1,4 +1,4 @@
-"""Bars that show how far a long computation is, and calls during which Ctrl-C is heard.
+"""Where long computations begin: bars that show how far they are, and calls that hear Ctrl-C.
 
 Bars go to the standard error, only if that is a terminal or the program runs in a notebook, and
 only after a second. Logs and tests see none.
@@ -17,6 +17,33 @@ Result = TypeVar("Result")
 
 DELAY = 1.0  # seconds; what is over sooner needs no bar
 BEAT = 0.5  # seconds between two looks at the clock
+
+_rehearsing = contextvars.ContextVar("rehearsing", default=False)
+
+
+class _Begun(BaseException):
+    """Ends a rehearsal."""
+
+
+@contextmanager
+def rehearsal() -> Iterator[None]:
+    """End what is called within as soon as it begins to compute.
+
+    So it raises what it refuses before, because an argument or the scene is none that it takes.
+    """
+    before = _rehearsing.set(True)
+    try:
+        yield
+    except _Begun:
+        pass
+    finally:
+        _rehearsing.reset(before)
+
+
+def begin() -> None:
+    """Note that a computation begins, which is where a rehearsal ends."""
+    if _rehearsing.get():
+        raise _Begun
 
 
 def bar(what: str, total: float) -> AbstractContextManager[Callable[[float], None]]:
@@ -48,6 +75,7 @@ def counter(what: str, most: int = 0) -> AbstractContextManager[Callable[[float]
 
 @contextmanager
 def _shown(what: str, total: float | None, shape: str) -> Iterator[Callable[[float], None]]:
+    begin()
     if not (sys.stderr.isatty() or "ipykernel" in sys.modules):
         yield lambda more: None
         return
@@ -88,6 +116,7 @@ def interruptible(call: Callable[[], Result]) -> Result:
     object
         What the call returns; what it raises is raised here.
     """
+    begin()
     result: Future = Future()
     context = contextvars.copy_context()  # has numpy's treatment of overflow
 

@@ -10,8 +10,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from nonsmooth.checks import require_count, require_increasing, require_positive
 from nonsmooth.errors import AccuracyWarning, ToleranceError
 from nonsmooth.estimate import Estimate
+from nonsmooth.paths.cost import require_time
+from nonsmooth.paths.sampling import Sampling
+from nonsmooth.progress import rehearsal
+from nonsmooth.scenes.scene import Scene
 from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
 from studies.questions import INTEGRAL, OF_TIME, PLAIN, QUESTIONS, VARIABLES
@@ -51,6 +56,31 @@ def answer(
         given |= {"seed": (seed, "study"), "threads": threads}
     found, remark = _best(asked, thing, given)
     return _described(found, asked, ruler, known, f"{thing}, {dict(question)}", remark)
+
+
+def rehearse(thing: Scene, question: Mapping[str, Any], given: Mapping[str, Any]) -> None:
+    """Raise what the library refuses before it computes an answer.
+
+    Parameters
+    ----------
+    thing : Scene
+    question : mapping
+    given : mapping
+        See `arguments`.
+
+    Raises
+    ------
+    NonsmoothError
+        If an argument or the scene is none that the question takes, or it would take too long.
+    """
+    with rehearsal(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        if {"step", "paths"} <= given.keys():
+            last = np.max(require_increasing("horizons", given.get("horizons", 1.0)))
+            last *= require_positive("p", given.get("p", 1.0))
+            step = require_positive("step", given["step"])
+            require_time(last / step, Sampling(step, require_count("paths", given["paths"]), 0))
+        QUESTIONS[question["ask"]].solve(thing, **given)
 
 
 def meanings(question: Mapping[str, Any], scene: Mapping[str, Any]) -> dict[str, Powers]:

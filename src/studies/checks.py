@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import re
 import warnings
 from functools import cache
 from pathlib import Path
@@ -9,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from nonsmooth.errors import NonsmoothError
+from nonsmooth.errors import NonsmoothError, ToleranceError
 from nonsmooth.paths.absorption.envelope import scales
 from reproduction.configuration.schema import shown, validate
 from reproduction.errors import ConfigError, dotted
-from studies.answers import arguments, meanings
+from studies.answers import arguments, meanings, rehearse
 from studies.questions import QUESTIONS, TIME
 from studies.scenes import is_structure, scene_of
 from studies.study import Study
@@ -21,6 +22,8 @@ from studies.study import Study
 SCHEMA = Path(__file__).parents[2] / "workflow" / "schemas" / "study.schema.yaml"
 MOST_SCENES = 100_000
 ENVELOPE_POINTS = 500
+LONGEST_NAME = 200  # bytes of a name of a file, with its ending
+REHEARSED = 50  # scenes of which every question is tried
 
 
 def require_sound(study: Study) -> None:
@@ -45,6 +48,12 @@ def require_sound(study: Study) -> None:
         raise ConfigError(
             f"'sweep' makes {count} scenes, more than {MOST_SCENES}; leave out values"
         )
+    for name in study.scenes:
+        if len(name) > LONGEST_NAME:
+            raise ConfigError(
+                f"the name {shown(name)} of a scene has more than {LONGEST_NAME} characters; "
+                "shorten it, or give a sweep fewer parameters and shorter values"
+            )
     if study.axes and len(study.scenes) < count:
         raise ConfigError("'sweep' names two scenes alike; give values that differ as texts")
     for name, question in study.questions.items():
@@ -102,20 +111,34 @@ def _check_scene(study, name, parameters):
 
 def _check_meaning(study):
     """Make every scene once, or of a sweep its corners, and read all quantities."""
-    for name, parameters in _examples(study):
+    for number, (name, parameters) in enumerate(_examples(study)):
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                _, units = scene_of(parameters, study.units)
+                thing, units = scene_of(parameters, study.units)
         except NonsmoothError as error:
             raise _located(study, name, error) from None
         for question_name, question in study.questions.items():
             try:
                 given = arguments(question, units, meanings(question, parameters))
                 _check_envelope(question, given, units)
+                if number < REHEARSED:
+                    rehearse(thing, question, given)
+            except ToleranceError as error:
+                if error.result is None:
+                    raise _about(question_name, question, name, error) from None
             except NonsmoothError as error:
-                key = dotted(("questions", question_name))
-                raise ConfigError(f"{key}, of {dotted(('scenes', name))}: {error}") from None
+                raise _about(question_name, question, name, error) from None
+
+
+def _about(name, question, scene, error):
+    """Put before an error the argument that it is about, as the study gives it."""
+    text = str(error)
+    words = re.findall("[a-z]+", text)
+    blamed = [word for word in words if word in question.keys() - {"ask"}]
+    key = ("questions", name, *blamed[:1])
+    value = f" = {shown(question[blamed[0]])}" if blamed else ""
+    return ConfigError(f"{dotted(key)}{value}, of {dotted(('scenes', scene))}: {text}", key=key)
 
 
 def _check_envelope(question, given, units):

@@ -13,6 +13,7 @@ from typing import Any
 import yaml
 
 from reproduction.configuration.files import read
+from reproduction.configuration.schema import shown
 from reproduction.errors import ConfigError
 
 BATCH = 50  # scenes of a sweep that share a job, so that starting it takes less than its work
@@ -93,12 +94,15 @@ class Study:
         path = self.folder / name
         try:
             with open(path, encoding="utf-8-sig", newline="") as file:
-                rows = list(csv.DictReader(file, skipinitialspace=True))
+                table = csv.DictReader(file, skipinitialspace=True)
+                rows, names = list(table), table.fieldnames or []
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             reason = getattr(error, "strerror", None) or error
             raise ConfigError(
                 f"cannot be read ({reason}); name a CSV file in UTF-8", path
             ) from None
+        if doubled := {name for name in names if names.count(name) > 1}:
+            raise ConfigError(f"has the column {min(doubled)!r} twice; delete one of the two", path)
         found = {}
         for number, row in enumerate(rows, start=2):
             key = (row.get("name") or "").strip()
@@ -113,7 +117,7 @@ class Study:
             if key in found:
                 raise ConfigError(f"line {number}: the name {key!r} is taken; choose another", path)
             cells = {name: cell.strip() for name, cell in row.items() if name != "name"}
-            found[key] = {name: yaml.safe_load(cell) for name, cell in cells.items() if cell}
+            found[key] = {name: _value(cell, number, path) for name, cell in cells.items() if cell}
         if not found:
             raise ConfigError("has no scenes; write a line with names of columns, and more", path)
         return found
@@ -143,6 +147,16 @@ class Study:
         if self.batch == 1:
             return [f"{name}/{question}.nc" for name in self.scenes]
         return [f"batches/{question}/{number}.nc" for number in self.batches]
+
+
+def _value(cell, number, path):
+    """Read a cell as a value of YAML."""
+    try:
+        return yaml.safe_load(cell)
+    except (yaml.YAMLError, ValueError, OverflowError, RecursionError):
+        raise ConfigError(
+            f"line {number}: the cell {shown(cell)} is no value of YAML; mend or quote it", path
+        ) from None
 
 
 def label(point: Mapping[str, Any]) -> str:

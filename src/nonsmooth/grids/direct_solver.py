@@ -26,7 +26,7 @@ from nonsmooth.grids import tuning
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.progress import fulfil
+from nonsmooth.progress import begin, fulfil
 from nonsmooth.scenes.scene import Scene
 
 
@@ -93,6 +93,7 @@ class SparseFactors:
     _workshop: ClassVar[_Workshop | None] = None
 
     def __init__(self, matrix: sp.sparray):
+        begin()
         workshop = SparseFactors._workshop
         if workshop is None or not workshop.is_open():
             workshop = SparseFactors._workshop = _Workshop()

@@ -157,6 +157,7 @@ class PoissonFit:
     """The fit of the Poisson solution, see `tilted.poisson`."""
 
     stretch: float = 10.0  # chosen: in units of the larger of 1 and 1/C_b, several relaxation times
+    most_steps: int = 200_000  # chosen: of a stretch; then minutes
     stretches: int = 4  # chosen: of a thousand paths; their noise is below the polynomial's error
     margin: float = 1.3  # chosen: reach of the polynomials over the largest states seen
     singular: float = 1e-8  # chosen: singular values that count as 0, near single precision

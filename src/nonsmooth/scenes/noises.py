@@ -121,10 +121,10 @@ class Langevin:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sigma", require_parameter("sigma", self.sigma))
-        if as_number(self.potential) is not None:
+        if (number := as_number(self.potential)) is not None:
             raise SceneError(
                 f"the noise potential is {quoted(self.potential)}; write a formula of eta in "
-                f"quotes, or OrnsteinUhlenbeck(theta={self.potential}, sigma={self.sigma:g})"
+                f"quotes, or OrnsteinUhlenbeck(theta={number:g}, sigma={self.sigma:g})"
             )
         require_moderate("v", self.potential, self.potential_expression, (eta,))
         require_slope(self.potential, self.potential_expression, eta)

@@ -19,6 +19,8 @@ import numba
 import platformdirs
 from numba.core import event
 
+from nonsmooth.progress import begin
+
 _PACKAGE = Path(__file__).parents[2]  # the whole library
 _SOURCES = sorted(p for room in ("paths", "scenes") for p in (_PACKAGE / room).rglob("*.py"))
 _DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()
@@ -74,6 +76,7 @@ def announced(loop: Any) -> Iterator[None]:
     loop : numba dispatcher
         The kernel that is meant, not those that are compiled into it.
     """
+    begin()
     with event.install_listener("numba:compile", _Announcement(loop)):
         yield
 

@@ -148,6 +148,8 @@ def _fit(scene, guide, prior, aim, kept, times, h, few, unit, effective):
             if k > 0:
                 now_there = record.on_way[k - 1] & ~on_way & (weight > 0)
                 arrived.append([weight[now_there].sum(), weight[now_there] @ u[now_there]])
+    if not np.all(np.isfinite(information)):  # squares of squares overflow
+        return guide
     parts = np.split(before + _likeliest(information, score), cuts[:-1])
     coefficients = np.zeros_like(prior.coefficients)
     coefficients[0] = prior.coefficients[0]

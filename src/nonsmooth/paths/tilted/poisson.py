@@ -10,7 +10,7 @@ squares over many stretches. This takes every scene, in any number of variables.
 
 import numpy as np
 
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.paths import tuning
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
@@ -18,6 +18,7 @@ from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.tilted.polynomials import polynomials, state_rows
 from nonsmooth.paths.tilted.tilt import Guide
 from nonsmooth.paths.time_loop import EVERYWHERE, compile_march, march
+from nonsmooth.progress import bar
 from nonsmooth.scenes.scene import Scene
 
 
@@ -39,12 +40,22 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     ------
     SceneError
         If int g does not spread like a Brownian motion.
+    ToleranceError
+        If this takes too many steps.
     """
+    chosen = tuning.POISSON_FIT
+    stretch = chosen.stretch * max(1.0, 1 / scene.damping)
+    count = int(np.ceil(stretch / step))
+    if count > chosen.most_steps:
+        raise ToleranceError(
+            f"importance sampling first follows paths for a time of {stretch:.2g}, {count:.1e} "
+            f"steps, above {chosen.most_steps:.0e}; choose a longer step, more damping or "
+            "method='monte_carlo'"
+        )
     s = registry.coefficients(scene, "strang", step)
     panel = new_panel(scene, labelled(seed, "poisson"), 0)
     compile_march(s, panel)
-    chosen, rows, factor = tuning.POISSON_FIT, state_rows(scene), float(s.factor[0])
-    count = int(np.ceil(chosen.stretch * max(1.0, 1 / scene.damping) / step))
+    rows, factor = state_rows(scene), float(s.factor[0])
     march(s, panel, BLOCK, count, *EVERYWHERE)
     degree = tuning.TILT.degrees[scene.dimension - 1]
     basis = polynomials(scene, degree, panel.data[rows, :BLOCK].astype(float), chosen.margin)
@@ -55,16 +66,18 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     def values():
         return basis.values(panel.data[rows, :BLOCK].astype(float))
 
-    for _ in range(chosen.stretches):
-        before, began = values()[used], panel.total[:, :BLOCK].copy()
-        martingale = np.zeros_like(before)
-        for _ in range(count):
-            slope = values()[lower] * times[:, None]
-            march(s, panel, BLOCK, 1, *EVERYWHERE)
-            martingale += factor * slope * panel.data[0, :BLOCK]
-        columns.append((martingale - values()[used] + before).T)
-        martingales.append(martingale.T)
-        gains.append(panel.total[TOTAL_DELTA, :BLOCK] - began[TOTAL_DELTA])
+    with bar("fitting", chosen.stretches * count) as advance:
+        for _ in range(chosen.stretches):
+            before, began = values()[used], panel.total[:, :BLOCK].copy()
+            martingale = np.zeros_like(before)
+            for _ in range(count):
+                slope = values()[lower] * times[:, None]
+                march(s, panel, BLOCK, 1, *EVERYWHERE)
+                martingale += factor * slope * panel.data[0, :BLOCK]
+                advance(1)
+            columns.append((martingale - values()[used] + before).T)
+            martingales.append(martingale.T)
+            gains.append(panel.total[TOTAL_DELTA, :BLOCK] - began[TOTAL_DELTA])
     x, gain = np.concatenate(columns), np.concatenate(gains)
     if not scene.is_odd():
         x = np.column_stack([x, np.ones(len(x))])
