@@ -86,13 +86,15 @@ def faults(mutation: Mutation, output: str) -> list[str]:
     return found
 
 
-def by_command(mutation: Mutation, folder: Path) -> tuple[str, list[str], float]:
+def by_command(mutation: Mutation, folder: Path, *targets: str) -> tuple[str, list[str], float]:
     """Give a mutation to snakemake in a copy of the repository.
 
     Parameters
     ----------
     mutation : Mutation
     folder : Path
+    *targets : str
+        What snakemake is asked for; the paper unless given.
 
     Returns
     -------
@@ -105,10 +107,10 @@ def by_command(mutation: Mutation, folder: Path) -> tuple[str, list[str], float]
     original = place.read_bytes()
     place.write_bytes(mutation.text)
     before = _listing(folder)
-    options = [] if mutation.file == CONFIG else ["--configfile", SMOKE]
+    options = ["--configfile", SMOKE] if mutation.file == SMOKE else []
     start, before_run = time.perf_counter(), _processor_time()
     run = subprocess.run(
-        [sys.executable, "-m", "snakemake", "--cores", "1", "--dry-run", *options],
+        [sys.executable, "-m", "snakemake", "--cores", "1", "--dry-run", *options, "--", *targets],
         cwd=folder,
         capture_output=True,
         text=True,

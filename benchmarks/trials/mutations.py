@@ -97,23 +97,30 @@ def mutations() -> list[Mutation]:
     for file in (CONFIG, SMOKE):
         config = yaml.safe_load((ROOT / file).read_text(encoding="utf-8"))
         found += [Mutation(kind, file, (), text) for kind, text in BROKEN_TEXTS.items()]
-        for kind, key, value in [*_by_schema(config, schema, schema, file), *SIZES, *MISFITS]:
+        for kind, key, value in [
+            *mutated_by_schema(config, schema, schema, file),
+            *SIZES,
+            *MISFITS,
+        ]:
             # a file that overrides may leave out everything
             if not (file == SMOKE and value is DELETED):
-                found.append(_changed(kind, file, config, key, value))
+                found.append(changed(kind, file, config, key, value))
         found += [
-            _changed(f"outputs: {value!r:.30}", file, config, ("outputs", name), value)
+            changed(f"outputs: {value!r:.30}", file, config, ("outputs", name), value)
             for name, values in OUTPUTS.items()
             for value in values
             # the results of the reduced sizes are elsewhere
             if not (file == SMOKE and value.startswith("results/tables"))
         ]
     config = yaml.safe_load((ROOT / CONFIG).read_text(encoding="utf-8"))
-    found += [_changed("legal", CONFIG, config, key, value, legal=True) for key, value in LEGAL]
+    found += [changed("legal", CONFIG, config, key, value, legal=True) for key, value in LEGAL]
     return found
 
 
-def _changed(kind, file, config, key, value, legal=False):
+def changed(
+    kind: str, file: str, config: dict, key: tuple, value: object, legal: bool = False
+) -> Mutation:
+    """Change one value of a configuration."""
     return Mutation(kind, file, key, _with(config, key, value), legal)
 
 
@@ -129,13 +136,16 @@ def _with(config, key, value):
     return config | {first: _with(config.get(first, {}), rest, value)}
 
 
-def _by_schema(value, node, schema, file, key=()) -> Iterator[tuple[str, tuple, object]]:
+def mutated_by_schema(
+    value: object, node: dict, schema: dict, file: str, key: tuple = ()
+) -> Iterator[tuple[str, tuple, object]]:
     """Walk a configuration with its schema, and break each value in every way the schema names."""
     node = _resolved(value, node, schema)
     if key:
         yield "null", key, None
         yield "wrong type", key, [] if node.get("type") == "object" else {"a": 1}
     kind = node.get("type", "string")
+    kind = kind[0] if isinstance(kind, list) else kind
     yield from {"object": _objects, "array": _arrays, "string": _texts}.get(kind, _numbers)(
         value, node, key
     )
@@ -143,11 +153,13 @@ def _by_schema(value, node, schema, file, key=()) -> Iterator[tuple[str, tuple, 
         named = node.get("properties", {})
         for name, inner in value.items():
             below = named.get(name, node.get("additionalProperties"))
-            yield from _by_schema(inner, below, schema, file, (*key, name))
+            if below:
+                yield from mutated_by_schema(inner, below, schema, file, (*key, name))
     elif kind == "array":
         # all entries are alike
-        below = node["prefixItems"][0] if "prefixItems" in node else node["items"]
-        yield from _by_schema(value[0], below, schema, file, (*key, 0))
+        below = node["prefixItems"][0] if "prefixItems" in node else node.get("items")
+        if below:
+            yield from mutated_by_schema(value[0], below, schema, file, (*key, 0))
 
 
 def _resolved(value, node, schema):
@@ -158,8 +170,8 @@ def _resolved(value, node, schema):
             node = schema["$defs"][node["$ref"].rpartition("/")[2]] | rest
         elif "if" in node and "type" not in node:
             named = set(value) if isinstance(value, dict) else set()
-            if node["if"] == {"type": "object"}:
-                taken = isinstance(value, dict)
+            if "type" in node["if"]:
+                taken = isinstance(value, {"object": dict, "string": str}[node["if"]["type"]])
             else:
                 taken = bool({"H", "F"} & named)
             node = node["then" if taken else "else"]
@@ -213,7 +225,7 @@ def _numbers(value, node, key):
     yield "boolean for a number", key, True
     yield "not a number", key, math.nan
     yield "negative", key, -1 if whole else -0.5
-    if node.get("description") != "n, may be .inf":
+    if "may be .inf" not in node.get("description", ""):
         yield "infinite", key, math.inf
     if whole:
         yield "fraction", key, value + 0.5

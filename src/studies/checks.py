@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from nonsmooth.errors import NonsmoothError, ToleranceError
+from nonsmooth.errors import NonsmoothError, ToleranceError, quoted
 from nonsmooth.paths.absorption.envelope import scales
 from reproduction.configuration.schema import shown, validate
 from reproduction.errors import ConfigError, dotted
@@ -117,7 +117,7 @@ def _check_meaning(study):
                 warnings.simplefilter("ignore")
                 thing, units = scene_of(parameters, study.units)
         except NonsmoothError as error:
-            raise _located(study, name, error) from None
+            raise _located(study, name, error, parameters) from None
         for question_name, question in study.questions.items():
             try:
                 given = arguments(question, units, meanings(question, parameters))
@@ -164,8 +164,13 @@ def _examples(study):
     return [(names[0] if point == first else str(point), base | point) for point in wanted]
 
 
-def _located(study, name, error):
+def _located(study, name, error, parameters=None):
+    """Put before an error its scene, and the parameter whose value it quotes."""
     key = ("sweep",) if study.axes else ("scenes", name)
+    for parameter, value in (parameters or {}).items():
+        if isinstance(value, str) and quoted(value)[1:41] in str(error):
+            key = (*key, parameter)
+            break
     return ConfigError(f"{dotted(key)}: {error}", key=key)
 
 

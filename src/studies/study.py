@@ -99,7 +99,7 @@ class Study:
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             reason = getattr(error, "strerror", None) or error
             raise ConfigError(
-                f"cannot be read ({reason}); name a CSV file in UTF-8", path
+                f"'scenes' = {shown(name)} cannot be read ({reason}); name a CSV file in UTF-8"
             ) from None
         if doubled := {name for name in names if names.count(name) > 1}:
             raise ConfigError(f"has the column {min(doubled)!r} twice; delete one of the two", path)

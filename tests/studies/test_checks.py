@@ -52,10 +52,15 @@ def refused(content, keys, value):
         (["questions", "crossing", "horizons"], None, "the key 'horizons' is missing in"),
         (["scenes", "weak", "dampling"], 1, "'scenes.weak': unknown key 'dampling'; did you mean"),
         (["scenes", "weak", "damping"], -1, "'scenes.weak': 'damping' = -1: must be"),
-        (["scenes", "weak", "observable"], "y +", "'scenes.weak': cannot read the formula"),
+        (["scenes", "weak", "observable"], "y +", "'scenes.weak.observable': cannot read"),
         (["scenes"], "rows.txt", "'scenes' = 'rows.txt': must end with .csv"),
-        (["scenes"], "rows.csv", "rows.csv: cannot be read (No such file or directory)"),
+        (["scenes"], "rows.csv", "'scenes' = 'rows.csv' cannot be read (No such file or"),
         (["sweep"], {"damping": [1]}, "'scenes' and 'sweep' are both given"),
+        (["questions", "crossing", "tol"], -1, "'questions.crossing.tol' = -1, of 'scenes.weak': "),
+        (["questions", "crossing", "method"], "count", "'questions.crossing.method' = 'count'"),
+        (["questions", "crossing", "horizons"], [2, 1], "give positive numbers that increase"),
+        (["questions", "spread", "method"], "corrected", "'questions.spread.method' = 'corrected'"),
+        (["scenes"], {"a" * 201: {}}, "must have at most 100 characters"),
         (["scenes", "heavy"], {"mass": "1 kg"}, "'ground_spectral_density' is missing"),
     ],
 )  # fmt: skip
@@ -95,3 +100,28 @@ def test_bad_study_in_si_units(keys, value, message):
 def test_the_studies_that_come_along_are_sound(path):
     """Each of them."""
     require_sound(Study.of_file(path))
+
+
+def test_sizes_without_end_are_refused():
+    """Before anything runs, with the hours that they would take."""
+    size = {"method": "monte_carlo", "paths": 10**15, "step": 0.1}
+    question = SOUND["questions"]["crossing"] | size
+    message = refused(SOUND, ["questions", "crossing"], question)
+    assert "'questions.crossing.paths' = 1000000000000000" in message
+    assert "hours" in message
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("name,n\na,[1\n", "line 2: the cell '[1' is no value of YAML"),
+        ("name,n\na,!!python/name:os.system\n", "is no value of YAML"),
+        ("name,n,n\na,1,2\n", "has the column 'n' twice"),
+    ],
+)
+def test_a_bad_table(tmp_path, rows, message):
+    """Refused with its file and line; nothing in it is run."""
+    (tmp_path / "rows.csv").write_text(rows)
+    with pytest.raises(ConfigError, match=r"rows\.csv") as caught:
+        require_sound(Study("mine", SOUND | {"scenes": "rows.csv"}, tmp_path))
+    assert message in str(caught.value)
