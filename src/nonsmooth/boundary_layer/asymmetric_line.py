@@ -16,7 +16,7 @@ from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
 from nonsmooth.line import quadrature
-from nonsmooth.linear_algebra import backward, cholesky, forward
+from nonsmooth.linear_algebra.dense import backward, cholesky, forward
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.scene import Scene
 

@@ -14,7 +14,7 @@ from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
-from nonsmooth.linear_algebra import backward, cholesky, forward, svd
+from nonsmooth.linear_algebra.dense import backward, cholesky, forward, svd
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.scene import Scene
 

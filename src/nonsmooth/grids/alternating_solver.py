@@ -14,13 +14,13 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from sympy import Symbol
 
-from nonsmooth import linear_algebra
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import tuning
 from nonsmooth.grids.direct_solver import SparseFactors
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.linear_algebra import dense
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x
 
@@ -71,7 +71,7 @@ class AlternatingSolver:
         self._resolvents = [SparseFactors(shift * identity - t) for t in self._transport]
         # a product with an inverse takes half the time of two triangular solutions
         self._noise_resolvents = {
-            sign: linear_algebra.inverse(shift * np.eye(len(part)) - part)
+            sign: dense.inverse(shift * np.eye(len(part)) - part)
             for sign, part in self._noise.items()
         }
         self._measure = self._measure_near_origin(rest)
@@ -100,7 +100,7 @@ class AlternatingSolver:
 
     def _measure_near_origin(self, rest):
         """Return a measure of mass 1; the integral of a solution over it fixes the constant."""
-        masses = linear_algebra.svd(self._noise[EVEN].T)[2][-1]  # spans the kernel
+        masses = dense.svd(self._noise[EVEN].T)[2][-1]  # spans the kernel
         masses = masses.reshape(self._kept, 1, self._own) / masses.sum()
         measure = (masses * _bump(rest)[None, :, None]).ravel()
         return measure / measure.sum()

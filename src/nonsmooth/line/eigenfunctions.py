@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nonsmooth import linear_algebra
 from nonsmooth.errors import ToleranceError
 from nonsmooth.line import tuning
 from nonsmooth.line.spectral_elements import assemble, mesh
+from nonsmooth.linear_algebra import dense
 from nonsmooth.scenes.scene import Scene
 
 
@@ -102,7 +102,7 @@ def modes(mass: np.ndarray, stiffness: np.ndarray, scale: float) -> tuple[np.nda
     shifted = mass + stiffness / scale
     balance = 1 / np.sqrt(np.diag(shifted))
     both = np.outer(balance, balance)
-    nu, vectors = linear_algebra.eigh(mass * both, shifted * both)
+    nu, vectors = dense.eigh(mass * both, shifted * both)
     keep = nu > tuning.SPECTRAL_ELEMENTS.least_nu
     nu, vectors = nu[keep][::-1], vectors[:, keep][:, ::-1] * balance[:, None]
     return scale * (1 / nu - 1), vectors / np.sqrt(nu)

@@ -19,13 +19,13 @@ import numpy as np
 import scipy.linalg
 from scipy.interpolate import CubicSpline
 
-from nonsmooth import linear_algebra
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.grids.elements import discontinuous
 from nonsmooth.grids.grading import graded, split
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
+from nonsmooth.linear_algebra import dense
 
 
 class UnstableError(Exception):
@@ -143,7 +143,7 @@ class _SplitStep:
         self.many = len(grid.speeds)
         with np.errstate(over="ignore", invalid="ignore"):  # is found to be unstable
             self.mixing = {
-                parity: linear_algebra.exponential(step * grid.generator[parity].toarray())
+                parity: dense.exponential(step * grid.generator[parity].toarray())
                 for parity in (EVEN, ODD)
             }
         speeds, self._which = np.unique(
@@ -151,8 +151,7 @@ class _SplitStep:
         )
         speeds = speeds * np.max(np.abs(grid.speeds))
         self.flows = [
-            linear_algebra.exponential(step / 2 * g * interval.slopes[1 if g > 0 else -1]).T
-            for g in speeds
+            dense.exponential(step / 2 * g * interval.slopes[1 if g > 0 else -1]).T for g in speeds
         ]
 
     def doubled(self):

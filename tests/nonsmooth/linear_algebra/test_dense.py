@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from nonsmooth import linear_algebra
+from nonsmooth.linear_algebra import dense
 
 SIZE = 60
 EPS = np.finfo(float).eps
@@ -21,7 +21,7 @@ SYMMETRIC = MATRIX + MATRIX.T
 
 def test_eigenvectors_are_orthonormal_and_solve_the_problem():
     """Residuals are rounding: a few eps, times the size and the norms of the matrices."""
-    values, vectors = linear_algebra.eigh(SYMMETRIC, METRIC)
+    values, vectors = dense.eigh(SYMMETRIC, METRIC)
     condition = np.linalg.cond(METRIC)
     assert np.max(np.abs(vectors.T @ METRIC @ vectors - np.eye(SIZE))) < SIZE * EPS * condition
     residual = SYMMETRIC @ vectors - METRIC @ vectors * values
@@ -32,12 +32,12 @@ def test_eigenvectors_are_orthonormal_and_solve_the_problem():
 
 def test_triangular_equations():
     """To the last bit, those of LAPACK's triangular solution."""
-    factor = linear_algebra.cholesky(METRIC)
+    factor = dense.cholesky(METRIC)
     for values in (MATRIX, MATRIX[0]):
         z = scipy.linalg.solve_triangular(factor, values, lower=True)
-        assert np.array_equal(linear_algebra.forward(factor, values), z)
+        assert np.array_equal(dense.forward(factor, values), z)
         z = scipy.linalg.solve_triangular(factor, values, lower=True, trans="T")
-        assert np.array_equal(linear_algebra.backward(factor, values), z)
+        assert np.array_equal(dense.backward(factor, values), z)
 
 
 @pytest.mark.parametrize("size", [1e-8, 0.1, 1.0, 30.0])
@@ -45,7 +45,7 @@ def test_exponential(size):
     """As scipy's, up to rounding that squaring multiplies by the norm."""
     matrix = -size * METRIC / np.linalg.norm(METRIC, 1) + 0.1 * size * (MATRIX - MATRIX.T)
     norm = max(1.0, np.linalg.norm(matrix, 1))
-    found, expected = linear_algebra.exponential(matrix), scipy.linalg.expm(matrix)
+    found, expected = dense.exponential(matrix), scipy.linalg.expm(matrix)
     assert np.max(np.abs(found - expected)) < 10 * EPS * norm * SIZE * np.max(np.abs(expected))
 
 
@@ -53,17 +53,17 @@ def test_what_is_not_finite_is_told():
     """By an error, or by what is not a number."""
     broken = np.full((3, 3), np.nan)
     with pytest.raises(np.linalg.LinAlgError):
-        linear_algebra.eigh(broken, np.eye(3))
-    assert np.all(np.isnan(linear_algebra.exponential(broken)))
+        dense.eigh(broken, np.eye(3))
+    assert np.all(np.isnan(dense.exponential(broken)))
 
 
 LONG = {
-    "eigh": lambda matrix: linear_algebra.eigh(matrix, matrix),
-    "svd": linear_algebra.svd,
-    "cholesky": lambda matrix: [linear_algebra.cholesky(matrix) for _ in range(20)],
-    "inverse": lambda matrix: [linear_algebra.inverse(matrix) for _ in range(5)],
-    "backward": lambda matrix: [linear_algebra.backward(matrix, matrix) for _ in range(10)],
-    "exponential": linear_algebra.exponential,
+    "eigh": lambda matrix: dense.eigh(matrix, matrix),
+    "svd": dense.svd,
+    "cholesky": lambda matrix: [dense.cholesky(matrix) for _ in range(20)],
+    "inverse": lambda matrix: [dense.inverse(matrix) for _ in range(5)],
+    "backward": lambda matrix: [dense.backward(matrix, matrix) for _ in range(10)],
+    "exponential": dense.exponential,
 }
 
 
