@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from reproduction.errors import ConfigError
 from studies.study import Study
@@ -42,12 +43,14 @@ class Studies:
 
         return found
 
-    def modules(self, study: str, question: str) -> list[str]:
+    def modules(self, wildcards: Any) -> list[str]:
         """List the source files of the functions that answer a question."""
         # the units take a second, which other targets need not wait for
         from studies.questions import QUESTIONS
 
-        return imported(QUESTIONS[self.get(study).questions[question]["ask"]].modules)
+        question = self.get(wildcards.study).questions[wildcards.question]
+        root = self.folder.parent
+        return [str(root / path) for path in imported(QUESTIONS[question["ask"]].modules)]
 
     def file(self, name: str) -> Path:
         """Name the file of a study."""

@@ -10,15 +10,10 @@ except ConfigError as error:
     sys.exit(f"error: {error}")
 
 
-def asked(wildcards):
-    """List the modules of a question, which the script imports by their names."""
-    return [own(path) for path in STUDIES.modules(wildcards.study, wildcards.question)]
-
-
 rule study_answer:
     """Answer {wildcards.question} of {wildcards.case}, study {wildcards.study}"""
     input:
-        asked=asked,
+        asked=STUDIES.modules,
     output:
         "<results>/studies/{study}/{case}/{question}.nc",
     params:
@@ -33,7 +28,7 @@ rule study_answer:
 rule study_batch:
     """Answer {wildcards.question} of batch {wildcards.batch}, study {wildcards.study}"""
     input:
-        asked=asked,
+        asked=STUDIES.modules,
     output:
         "<results>/studies/{study}/batches/{question}/{batch}.nc",
     params:

@@ -5,18 +5,13 @@ unknowns; numpy's releases it. Each function works in a thread for which the cal
 `progress.interruptible`.
 """
 
-import math
 from functools import partial
 
 import numpy as np
+import scipy.sparse.linalg
 from scipy.linalg import lu_solve
 
 from nonsmooth.progress import interruptible
-
-# of the diagonal Pade approximant of degree 13 of exp, and the norm up to which it is exact to
-# rounding: N. J. Higham, The scaling and squaring method for the matrix exponential revisited, 2005
-_PADE = [math.comb(13, k) * math.factorial(26 - k) for k in range(14)]
-_PADE_REACH = 5.37
 
 
 def eigh(matrix: np.ndarray, metric: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -85,34 +80,17 @@ def _triangular(factor, values, transposed):
 
 
 def exponential(matrix: np.ndarray) -> np.ndarray:
-    """Return exp of a matrix, by scaling and squaring."""
+    """Return exp of a matrix, by scaling and squaring; what is too large is not a number."""
 
     def solve():
-        size = np.linalg.norm(matrix, 1)
-        if not np.isfinite(size):
+        try:
+            with np.errstate(all="ignore"):
+                # that of sparse matrices is made of numpy's products, unlike that of dense ones
+                return scipy.sparse.linalg.expm(matrix)
+        except (OverflowError, ValueError):
             return np.full_like(matrix, np.nan)
-        squarings = max(0, math.ceil(math.log2(max(size / _PADE_REACH, 1.0))))
-        found = _pade(matrix / 2.0**squarings)
-        for _ in range(squarings):
-            found = found @ found
-        return found
 
     return interruptible(solve)
-
-
-def _pade(matrix):
-    one = np.eye(len(matrix))
-    b = [c / _PADE[0] for c in _PADE]
-    second = matrix @ matrix
-    fourth = second @ second
-    sixth = fourth @ second
-    odd = matrix @ (
-        sixth @ (b[13] * sixth + b[11] * fourth + b[9] * second)
-        + (b[7] * sixth + b[5] * fourth + b[3] * second + b[1] * one)
-    )
-    even = sixth @ (b[12] * sixth + b[10] * fourth + b[8] * second)
-    even += b[6] * sixth + b[4] * fourth + b[2] * second + b[0] * one
-    return np.linalg.solve(even - odd, even + odd)
 
 
 def _require_finite(*matrices):

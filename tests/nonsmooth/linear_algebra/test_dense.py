@@ -55,6 +55,7 @@ def test_what_is_not_finite_is_told():
     with pytest.raises(np.linalg.LinAlgError):
         dense.eigh(broken, np.eye(3))
     assert np.all(np.isnan(dense.exponential(broken)))
+    assert not np.any(np.isfinite(dense.exponential(np.full((3, 3), 1e40))))
 
 
 LONG = {
