@@ -82,7 +82,7 @@ VALID: dict[str, dict[str, str]] = {
     "crossing_probability by importance_sampling": {
         "scene": _FRICTION,
         "threshold": "0.5",
-        "horizons": "[0.5, 1.0]",
+        "horizons": "[2.0, 4.0]",
         "p": "1.0",
         **_COUNTED,
         "method": '"importance_sampling"',
