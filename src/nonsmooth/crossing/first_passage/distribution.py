@@ -229,12 +229,10 @@ class _Refinement:
     def error(self, solutions):
         """Estimate the errors of the last solution from the difference to the one before."""
         refinement = tuning.REFINEMENT
-        odd = self.problem.scene.is_odd()
-        safety = refinement.safety_odd if odd else refinement.safety
         (coarse, _), (found, solved) = solutions[-2:]
         solution = np.clip(found, 0.0, 1.0)
         # values are compared before they are clipped: two levels that failed may agree afterwards
-        change = safety * np.abs(found - coarse) + np.abs(found - solution)
+        change = refinement.safety * np.abs(found - coarse) + np.abs(found - solution)
         self._change = np.where(solved, change, self._change)
         return _with_floors(self.problem, self.times, solution, self._change)
 

@@ -121,7 +121,6 @@ class Refinement:
     # fitted: benchmarks/crossing_honesty.py; factor on the difference of two levels, above 1 where
     # levels converge irregularly
     safety: float = 3.0
-    safety_odd: float = 2.0  # fitted: the same, for odd g and drift
     nearby: float = 2.0  # chosen: times within this factor share their errors
     underflow: float = 1e-300  # derived: about the smallest normal number
     exact: float = 1e-12  # chosen: smaller errors are kept, not replaced by the complement's error
