@@ -110,7 +110,7 @@ def test_a_sweep_computes_new_scenes_alone(repository):
         ({"titel": "x"}, "error: studies.mine: unknown key 'titel'; did you mean 'title'?"),
         (
             {"scenes": {"weak": {"slip_force": "5 mm"}}},
-            "error: studies.mine: 'scenes.weak.slip_force': 'slip_force': '5 mm' is no quantity in N",
+            "error: studies.mine: 'scenes.weak.slip_force': 'slip_force': '5 mm' is no quantity",
         ),
     ],
 )
