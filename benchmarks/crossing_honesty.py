@@ -3,8 +3,7 @@
 `python -m benchmarks.crossing_honesty [classes] [first seed]` draws random scenes with the state y
 and white noise and random intervals, and compares three times of a curve with the Laplace transform
 summed by the trapezoidal rule on a vertical line, on a grid of higher degree. It prints one line
-per class
-of observables.
+per class of observables.
 """
 
 import sys

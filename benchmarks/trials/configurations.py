@@ -18,11 +18,11 @@ import sys
 import tempfile
 import time
 import traceback
-from collections import Counter
 from functools import cache
 from pathlib import Path
 
 from benchmarks.trials.mutations import CONFIG, ROOT, SMOKE, Mutation, mutations
+from benchmarks.trials.tally import Tally
 from reproduction.configuration.files import read
 from reproduction.configuration.layers import Layers
 from reproduction.errors import ConfigError
@@ -163,8 +163,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--command", type=int, metavar="N", help="every N-th through snakemake")
     every = parser.parse_args().command
-    chosen, bad, counts = mutations(), 0, Counter()
-    start, longest = time.perf_counter(), 0.0
+    chosen, tally = mutations(), Tally()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if every:
@@ -173,25 +172,13 @@ def main() -> None:
         for mutation in chosen:
             if every:
                 output, found, seconds = by_command(mutation, folder)
-                longest = max(longest, seconds)
             else:
-                output = answer(mutation, folder)
+                output, seconds = answer(mutation, folder), 0.0
                 found = faults(mutation, output)
-            counts.update(["refused" if output else "accepted", *found])
-            counts["legal"] += mutation.legal
-            if found:
-                bad += 1
-                where = ".".join(map(str, mutation.key))[:80]
-                what = f"{', '.join(found)}: {mutation.file}, {mutation.kind}, {where}"
-                print(f"{what}: {output[-300:]}", flush=True)
-    print(f"mutations                     {len(chosen)}, of which legal {counts.pop('legal')}")
-    for what, count in counts.most_common():
-        print(f"{what:30}{count}")
-    if every:
-        print(f"{'longest, processor seconds':30}{longest:.1f}")
-    print(f"{'bad':30}{bad}")
-    print(f"{'seconds':30}{time.perf_counter() - start:.0f}")
-    sys.exit(bool(bad))
+            tally.add(mutation.told, output, found, seconds)
+    legal = sum(mutation.legal for mutation in chosen)
+    print(f"mutations                     {len(chosen)}, of which legal {legal}")
+    tally.end()
 
 
 if __name__ == "__main__":

@@ -37,6 +37,11 @@ class Mutation:
     legal: bool = False
 
     @property
+    def told(self) -> str:
+        """The file, and what is changed where."""
+        return f"{self.file}, {self.kind}, {'.'.join(map(str, self.key))[:80]}"
+
+    @property
     def text(self) -> bytes:
         """The whole changed file."""
         if isinstance(self.content, bytes):

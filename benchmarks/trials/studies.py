@@ -8,11 +8,9 @@ and exits with status 1 if anything is bad.
 
 import argparse
 import shutil
-import sys
 import tempfile
 import time
 import traceback
-from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,6 +26,7 @@ from benchmarks.trials.mutations import (
     changed,
     mutated_by_schema,
 )
+from benchmarks.trials.tally import Tally
 from reproduction.errors import ConfigError
 from workflow.studies import Studies
 
@@ -210,9 +209,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--command", type=int, metavar="N", help="every N-th through snakemake")
     every = parser.parse_args().command
-    bad, counts, start, longest = 0, Counter(), time.perf_counter(), 0.0
+    tally = Tally()
     # a sweep without its scenes and a scene more may be right
     chosen = [m for m in mutations() if not (m.kind == "sweep" and m.key)][:: every or 1]
+    many = len(chosen)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if every:
@@ -234,29 +234,13 @@ def main() -> None:
                 )
                 if seconds > configurations.SECONDS:
                     found.append(f"slower than {configurations.SECONDS:g} s")
-            longest = max(longest, seconds)
-            counts.update(["refused" if output else "accepted", *found])
-            if found:
-                bad += 1
-                where = ".".join(map(str, mutation.key))[:80]
-                what = f"{', '.join(found)}: {mutation.file}, {mutation.kind}, {where}"
-                print(f"{what}: {output[-300:]}", flush=True)
-        if not every:
-            for kind, output in tables(folder):
-                chosen.append(kind)
-                lines = output.splitlines()
-                fine = len(lines) == 1 and "studies/table" in output
-                counts.update(["refused" if output else "accepted"])
-                if not fine:
-                    bad += 1
-                    print(f"CSV, {kind}: {output[-300:]}", flush=True)
-    print(f"{'mutations':30}{len(chosen)}")
-    for what, count in counts.most_common():
-        print(f"{what:30}{count}")
-    print(f"{'longest, processor seconds':30}{longest:.1f}")
-    print(f"{'bad':30}{bad}")
-    print(f"{'seconds':30}{time.perf_counter() - start:.0f}")
-    sys.exit(bool(bad))
+            tally.add(mutation.told, output, found, seconds)
+        for kind, output in [] if every else tables(folder):
+            fine = len(output.splitlines()) == 1 and "studies/table" in output
+            tally.add(f"CSV, {kind}", output, [] if fine else ["does not tell file and cure"])
+            many += 1
+    print(f"{'mutations':30}{many}")
+    tally.end()
 
 
 if __name__ == "__main__":

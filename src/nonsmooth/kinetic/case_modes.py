@@ -198,10 +198,9 @@ def by_exit(grid: Ordinates, z: complex, lower: float, upper: float) -> np.ndarr
         )
     above, below = modes(grid, z)
     weights = np.sqrt(grid.masses[grid.moving])
-    far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
     if grid.mirrored:
         even, odd = (
-            np.linalg.solve(above.own + sign * above.other * far_above, weights / 2)
+            np.linalg.solve(above.own + sign * _arriving(above, upper - lower), weights / 2)
             for sign in (1, -1)
         )
         strengths = np.block([[even + odd, even - odd], [even - odd, even + odd]])
@@ -211,10 +210,7 @@ def by_exit(grid: Ordinates, z: complex, lower: float, upper: float) -> np.ndarr
         right = np.zeros((len(weights), 2))
         many = len(above.rates)
         right[:many, 0], right[many:, 1] = weights[leaves], weights[~leaves]
-        strengths = np.linalg.solve(
-            np.block([[above.own, below.other * far_below], [above.other * far_above, below.own]]),
-            right,
-        )
+        strengths = np.linalg.solve(_at_both_walls(above, below, upper - lower), right)
     start = np.append(
         above.start * np.exp(-above.rates * upper), below.start * np.exp(below.rates * lower)
     )
@@ -242,16 +238,13 @@ def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Wave
         return _of_one_wall(above, below, np.abs(g[up]), np.abs(g[down]), weights[up]), none
     if np.isinf(upper):
         return none, _of_one_wall(below, above, np.abs(g[down]), np.abs(g[up]), weights[down])
-    far_above, far_below = (np.exp(-m.rates * (upper - lower)) for m in (above, below))
     if grid.mirrored:  # by symmetry the modes of both walls have the same strengths
-        strength = np.linalg.solve(above.own + above.other * far_above, weights)
+        strength = np.linalg.solve(above.own + _arriving(above, upper - lower), weights)
         strengths = [strength, strength]
     else:
         strengths = np.split(
             np.linalg.solve(
-                np.block(
-                    [[above.own, below.other * far_below], [above.other * far_above, below.own]]
-                ),
+                _at_both_walls(above, below, upper - lower),
                 np.concatenate([weights[up], weights[down]]),
             ),
             [len(above.rates)],
@@ -259,6 +252,18 @@ def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Wave
     return (
         Waves(above.start * strengths[0], above.rates),
         Waves(below.start * strengths[1], below.rates),
+    )
+
+
+def _arriving(wall, distance):
+    """Values of the modes of a wall at the opposite one."""
+    return wall.other * np.exp(-wall.rates * distance)
+
+
+def _at_both_walls(above, below, distance):
+    """Values of the modes of both walls where paths leave: at the upper and at the lower one."""
+    return np.block(
+        [[above.own, _arriving(below, distance)], [_arriving(above, distance), below.own]]
     )
 
 

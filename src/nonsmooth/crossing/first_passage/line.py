@@ -39,8 +39,7 @@ class LineProblem(LaplaceProblem):
         self, resolution: int, times: np.ndarray, rarity: float
     ) -> Callable[[complex], complex]:
         """Return F on a grid for given times; see `LaplaceProblem`."""
-        reach = self._reach(times[-1], rarity)
-        return self._on_grid(resolution, times[0], reach, tuning.LINE_GRIDS.depth + rarity)
+        return self._on_grid(*self._fitting(resolution, times, rarity))
 
     @property
     def on_vertical_lines(self) -> bool:
@@ -54,12 +53,7 @@ class LineProblem(LaplaceProblem):
 
         No path is there before g has been as large as it can be all the time.
         """
-        grid = self._grid(
-            resolution,
-            times[0],
-            self._reach(times[-1], rarity),
-            tuning.LINE_GRIDS.depth + rarity,
-        )
+        grid = self._grid(*self._fitting(resolution, times, rarity))
         fastest = np.array([np.max(grid.g), -np.min(grid.g)])
         if grid.mirrored:
             fastest = np.full(2, fastest.max())
@@ -67,6 +61,11 @@ class LineProblem(LaplaceProblem):
         fronts = np.divide(distances, fastest, out=np.zeros(2), where=fastest > 0)
         fronts[np.isinf(fronts)] = 0.0  # nothing leaves there
         return lambda z: by_exit(grid, z, self.lower, self.upper), fronts
+
+    def _fitting(self, resolution, times, rarity):
+        """Return degree, shortest time, reach and depth of the grid for given times."""
+        reach = self._reach(times[-1], rarity)
+        return resolution, times[0], reach, tuning.LINE_GRIDS.depth + rarity
 
     def _on_grid(self, degree, time, reach, depth):
         grid = self._grid(degree, time, reach, depth)
