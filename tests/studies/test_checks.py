@@ -60,6 +60,8 @@ def refused(content, keys, value):
         (["questions", "crossing", "method"], "count", "'questions.crossing.method' = 'count'"),
         (["questions", "crossing", "horizons"], [2, 1], "give positive numbers that increase"),
         (["questions", "spread", "method"], "corrected", "'questions.spread.method' = 'corrected'"),
+        (["questions", "rate"], {"ask": "hazard_rate", "threshold": [1, 2, 3], "horizons": [1]},
+         "'questions.rate.threshold' = [1, 2, 3], of 'scenes.weak': threshold is [1, 2, 3]; give"),
         (["scenes"], {"a" * 201: {}}, "must have at most 100 characters"),
         (["scenes", "heavy"], {"mass": "1 kg"}, "'ground_spectral_density' is missing"),
     ],

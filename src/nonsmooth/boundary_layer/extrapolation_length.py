@@ -54,7 +54,7 @@ def extrapolation_length(
     seed, threads = require_seed(seed), require_threads(threads)
 
     def solve():
-        solved = solved_constants(scene, tol)
+        solved = solved_constants(scene.with_start({}), tol)  # kappa does not depend on the start
         return sampled_kappa(scene, tol, seed, threads) if solved is None else solved
 
     def present(found):

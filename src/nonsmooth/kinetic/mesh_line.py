@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.grading import distinct
 from nonsmooth.kinetic import tuning
 from nonsmooth.line.kinks import isolated_zeros, sign_changes, switches
@@ -39,6 +40,11 @@ def element_edges(
     -------
     numpy.ndarray
         Increasing; symmetric about 0 if drift and g are odd.
+
+    Raises
+    ------
+    ToleranceError
+        If double precision does not hold the density beyond the start.
     """
     settings, start = tuning.LINE_ORDINATES, scene.start.get("y", 0.0)
     end, scale = _extent(scene, time, reach, deepest)
@@ -79,7 +85,13 @@ def _extent(scene, time, reach, deepest):
     scale = min(
         np.sqrt(np.sum(weight * inside**2) / np.sum(weight)), scene.noise.sigma * np.sqrt(time)
     )
-    return min(max(end, abs(start) + settings.reach * scale), abs(start) + reach), scale
+    beyond = abs(start) + min(settings.reach * scale, reach)
+    if phi(beyond) > settings.deepest:
+        raise ToleranceError(
+            f"the start y = {start:g} is too far in the tails, where the stationary density is 0 "
+            "in double precision; start nearer or use Monte Carlo"
+        )
+    return max(min(end, abs(start) + reach), beyond), scale
 
 
 @dataclass(frozen=True)

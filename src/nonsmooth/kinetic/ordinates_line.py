@@ -139,6 +139,8 @@ def ordinates(
     ------
     SceneError
         If the scene has another state or noise.
+    ToleranceError
+        If it starts too far in the tails.
     """
     settings = tuning.LINE_ORDINATES
     time = settings.long_time / scene.damping if time is None else time

@@ -23,6 +23,7 @@ class LineOrdinates:
     # derived: the grid reaches so many deviations beyond the start; more has probability exp(-72)
     reach: float = 12.0
     long_time: float = 1e3  # chosen: time unless given, in 1/C_b; so long that it has no effect
+    deepest: float = 700.0  # derived: a density below exp(-708) has no digits in double precision
     shrink: float = 0.98  # chosen: factor by which the axis is shortened until it ends at `deepest`
     probed: int = 4001  # chosen: points of the sums that give the spread of the velocity
     searched: int = 501  # chosen: points between which sign changes of g are looked for

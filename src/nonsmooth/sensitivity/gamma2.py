@@ -3,7 +3,7 @@
 import time
 
 from nonsmooth.checks import require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError, answered
+from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene, require_scene
 from nonsmooth.sensitivity import grids, line, tuning
@@ -57,8 +57,8 @@ def asymptotic_variance_sensitivity(
         return Estimate(0.0, 0.0, "gamma^2 = 0", time.perf_counter() - began)
     if "y" not in scene.state:
         raise SceneError(
-            f"g = '{scene.observable}' is a function of the noise alone, which the solvers do not "
-            "take without the velocity; choose a g with y or x"
+            f"g = {quoted(scene.observable)} is a function of the noise alone, which the solvers "
+            "do not take without the velocity; choose a g with y or x"
         )
     accuracy = tuning.GAMMA2.tolerance[scene.dimension - 1] if wanted is None else wanted
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import partial
 
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import SceneError, answered, first_answer
+from nonsmooth.errors import SceneError, answered, first_answer, quoted
 from nonsmooth.estimate import Estimate, not_negative
 from nonsmooth.line import quadrature
 from nonsmooth.line.dry_friction import friction_variance
@@ -109,8 +109,8 @@ def _sampled(scene, tol, seed, threads):
 def _deterministic(scene, tol, _seed, _threads):
     if "y" not in scene.state:
         raise SceneError(
-            f"g = '{scene.observable}' is a function of the noise alone, which the solvers do not "
-            "take without the velocity; use method='monte_carlo'"
+            f"g = {quoted(scene.observable)} is a function of the noise alone, which the solvers "
+            "do not take without the velocity; use method='monte_carlo'"
         )
     tol = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
     if not scene.is_line:

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer
+from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer, quoted
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.generator import evaluate
@@ -118,8 +118,8 @@ def exact_mean(scene: Scene) -> Estimate | None:
 def _deterministic(scene, tol, _seed, _threads):
     if "y" not in scene.state:
         raise SceneError(
-            f"g = '{scene.observable}' is a function of the noise alone, which the solvers do not "
-            "take without the velocity; use method='monte_carlo'"
+            f"g = {quoted(scene.observable)} is a function of the noise alone, which the solvers "
+            "do not take without the velocity; use method='monte_carlo'"
         )
     return answered(lambda: mean_on_grids(scene, tol), lambda found: (*found, "spectral elements"))
 

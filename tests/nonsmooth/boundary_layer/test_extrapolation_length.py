@@ -12,6 +12,12 @@ def test_both_sides_of_an_odd_g():
     assert (lower.value, lower.error) == (upper.value, upper.error)
 
 
+def test_the_start_does_not_matter():
+    """Also where the stationary density at the start is 0 in double precision."""
+    far = FRICTION.with_start({"y": 1e6})
+    assert ns.extrapolation_length(far).value == ns.extrapolation_length(FRICTION).value
+
+
 def test_unknown_side():
     """A side that is neither is refused; the message has the choices."""
     with pytest.raises(ns.NonsmoothError, match="choose from lower, upper"):

@@ -156,6 +156,15 @@ class TestSmallScales:
         )
         assert found.probability_error[0] == 1
 
+    @pytest.mark.parametrize("start", [21.0, 1e6])
+    def test_a_start_without_density(self, start):
+        """Refused before a grid is made, which would have 1e11 elements; the limit knows less."""
+        far = FRICTION.with_start({"y": start})
+        with pytest.raises(ToleranceError, match=f"the start y = {start:g} is too far in the"):
+            ns.crossing_probability(far, 1.0, [1.0], 100, method="corrected")
+        found = ns.crossing_probability(far, 1.0, [1.0], 100, method="asymptotic")
+        assert found.probability_error[0] >= 0.5
+
 
 def test_orders_need_constants():
     """An order without its constants is refused; the message names the cure."""

@@ -412,7 +412,8 @@ class _Request:
     def out_of_reach(self, last):
         """Return the message that no guide was found."""
         return (
-            f"by the time {self.times[last]:g} hardly any path reaches the levels {self.levels}, "
+            f"by the time {self.times[last]:g} hardly any path reaches the levels "
+            f"{quoted(self.levels)}, "
             "although it is led there; choose nearer thresholds or longer horizons"
         )
 
