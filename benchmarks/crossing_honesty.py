@@ -1,11 +1,13 @@
 """Whether the stated errors of deterministic crossing probabilities are larger than the true ones.
 
-`python -m benchmarks.crossing_honesty [classes] [first seed]` draws random scenes with the state y
-and white noise and random intervals, and compares three times of a curve with the Laplace transform
-summed by the trapezoidal rule on a vertical line, on a grid of higher degree. It prints one line
-per class of observables.
+`python -m benchmarks.crossing_honesty` draws random scenes with the state y and white noise and
+random intervals, and compares three times of a curve with the Laplace transform summed by the
+trapezoidal rule on a vertical line, on a grid of higher degree. It prints one line per class of
+observables; arguments choose classes by their first words, `--first` the first seed and `--scenes`
+how many.
 """
 
+import argparse
 import sys
 import time
 import warnings
@@ -100,13 +102,16 @@ def compare(formulas, seed):
 
 def main(arguments):
     """Measure the classes and print the table."""
-    names = [word for word in arguments if not word.isdigit()]
-    first = sum(int(word) for word in arguments if word.isdigit())
-    table = {}
-    for name, (formulas, count) in CLASSES.items():
-        if names and name not in names:
+    parser = argparse.ArgumentParser(description="stated against true errors of crossings")
+    parser.add_argument("classes", nargs="*", help="their first words; all unless given")
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--scenes", type=int, help="how many of each class")
+    chosen, table = parser.parse_args(arguments), {}
+    for name, (formulas, usual) in CLASSES.items():
+        if chosen.classes and not name.startswith(tuple(chosen.classes)):
             continue
-        results = [compare(formulas, seed) for seed in range(first, first + count)]
+        count = chosen.scenes or usual
+        results = [compare(formulas, seed) for seed in range(chosen.first, chosen.first + count)]
         done = [r for r in results if r is not None]
         errors = np.array([row for _, rows in done for row in rows])
         true, stated = errors[np.isfinite(errors[:, 0])].T
