@@ -35,8 +35,8 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from nonsmooth.checks import require_choice, require_positive
-from nonsmooth.errors import SceneError
+from nonsmooth.checks import as_number, require_choice, require_positive
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.scenes.models.registry import MODELS
 from nonsmooth.scenes.noises import KanaiTajimi, Noise, White
 from nonsmooth.scenes.scene import Scene
@@ -103,12 +103,12 @@ class Structure:
         require_choice("model", self.model, MODELS)
         for name in ("mass", "damping", "limit", "spectral_density"):
             require_positive(name, getattr(self, name))
-        if self.stiffness != 0 or self.model == "elasto_plastic":
+        if as_number(self.stiffness) != 0 or self.model == "elasto_plastic":
             require_positive("stiffness", self.stiffness)
         if (self.ground_frequency is None) != (self.ground_damping is None):
             raise SceneError(
-                f"ground_frequency is {self.ground_frequency} and ground_damping is "
-                f"{self.ground_damping}; give both, or none for white noise"
+                f"ground_frequency is {quoted(self.ground_frequency)} and ground_damping is "
+                f"{quoted(self.ground_damping)}; give both, or none for white noise"
             )
         if self.ground_frequency is not None:
             require_positive("ground_frequency", self.ground_frequency)

@@ -129,7 +129,9 @@ def test_white_noise_without_a_spring_has_the_intensity_1():
         ({"mass": 0}, "mass is 0; give a positive"),
         ({"model": "rubber"}, "model is 'rubber'"),
         ({"model": "elasto_plastic"}, "stiffness is 0.0; give a positive"),
+        ({"stiffness": np.ones(2)}, r"stiffness is array\(\[1., 1.\]\); give a positive"),
         ({"ground_frequency": 3.0}, "ground_damping is None; give both"),
+        ({"ground_damping": np.ones((2, 2))}, r"is array\(\[\[1., 1.\], \[1., 1.\]\]\); give both"),
     ],
 )
 def test_what_is_refused(change, message):

@@ -69,7 +69,8 @@ def mean(
     tol = None if tol is None else require_tolerance(tol)
     method = None if method is None else require_choice("method", method, METHODS)
     seed, threads = require_seed(seed), require_threads(threads)
-    if method != "monte_carlo" and (exact := exact_mean(scene)) is not None:
+    known = method != "monte_carlo" or not scene.state  # a constant g is not sampled
+    if known and (exact := exact_mean(scene)) is not None:
         return exact
     ways = [method] if method else ["deterministic"] if "y" in scene.state else ["monte_carlo"]
     if ways == ["deterministic"] and method is None:

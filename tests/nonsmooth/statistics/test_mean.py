@@ -20,9 +20,10 @@ def test_zero_by_symmetry_and_along_paths():
     assert (found.value, found.error) == (0.0, 0.0)
 
 
-def test_constants():
-    """Exactly themselves."""
-    assert ns.mean(ns.Scene("friction", observable="2 + y - y")).value == 2.0
+@pytest.mark.parametrize("method", [None, "deterministic", "monte_carlo"])
+def test_constants(method):
+    """Exactly themselves, by every method."""
+    assert ns.mean(ns.Scene("friction", observable="2 + y - y"), method=method).value == 2.0
 
 
 def test_one_variable():
