@@ -12,7 +12,7 @@ from scipy import linalg, stats
 from scipy.interpolate import BarycentricInterpolator
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import AssumptionWarning, SceneError
 from nonsmooth.paths import ensembles, moments
 from nonsmooth.paths.kernels.panel import DELTA, ROWS, STATE, WIDTH, X, Y, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
@@ -255,6 +255,19 @@ def test_unstable_steps_are_refused(scene, name, step):
     with pytest.raises(SceneError, match=r"unstable with step .* choose one below"):
         coefficients(scene, name, step)
     assert coefficients(scene, name, SCHEMES[name].longest_step(scene) / 2) is not None
+
+
+def test_a_potential_with_a_pole():
+    """No step is stable: every way to choose one says so."""
+    with pytest.warns(AssumptionWarning):
+        scene = ns.Scene("elasto_plastic", potential="1/x")
+    for ask in (
+        lambda: coefficients(scene, "strang", 0.1),
+        lambda: ns.crossing_probability(scene, 1.0, [1.0], method="importance_sampling"),
+        lambda: ns.asymptotic_variance(scene, method="monte_carlo"),
+    ):
+        with pytest.raises(SceneError, match="no time step resolves the potential '1/x'"):
+            ask()
 
 
 def test_requests_that_no_scheme_can_meet():

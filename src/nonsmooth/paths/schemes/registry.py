@@ -4,7 +4,7 @@ from functools import lru_cache
 from typing import Any
 
 from nonsmooth.checks import require_choice
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.paths.control_variate import PoissonSlope
 from nonsmooth.paths.schemes.drift_implicit import DRIFT_IMPLICIT
 from nonsmooth.paths.schemes.dry_friction import DRY_FRICTION
@@ -74,10 +74,10 @@ def coefficients(
         If the scheme cannot simulate the scene, or not with such a step.
     """
     chosen = scheme(scene, name)
-    if not step < _longest_step(chosen, scene):
+    if not step < (longest := longest_step(chosen, scene)):
         raise SceneError(
             f"the scheme {chosen.name!r} is unstable with step = {step:g}; "
-            f"choose one below {_longest_step(chosen, scene):.2g}"
+            f"choose one below {longest:.2g}"
         )
     s = chosen.coefficients(scene, step, precision)
     if control is None or "control" not in s._fields:
@@ -92,8 +92,21 @@ def coefficients(
 
 
 @lru_cache(maxsize=256)
-def _longest_step(chosen, scene):
-    return chosen.longest_step(scene)
+def longest_step(chosen: Scheme, scene: Scene) -> float:
+    """Return the step below which a scheme is stable.
+
+    Raises
+    ------
+    SceneError
+        If there is none, because a force is infinite somewhere.
+    """
+    longest = chosen.longest_step(scene)
+    if longest == 0:
+        raise SceneError(
+            f"no time step resolves the potential {quoted(scene.potential)} or that of the noise, "
+            "which bends infinitely somewhere; choose one without poles"
+        )
+    return longest
 
 
 def on_given_increments(s: Any) -> Any:
