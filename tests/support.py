@@ -1,5 +1,6 @@
 """What several tests use: the repository, copies of it, single steps of paths, coarse grids."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -61,9 +62,11 @@ class Repository:
 
     def snakemake(self, *arguments):
         """Run snakemake with the smoke configuration; return the finished process."""
+        kernels = {"NUMBA_CACHE_DIR": str(ROOT / "src" / "nonsmooth" / "__pycache__")}
         return subprocess.run(
             [sys.executable, "-m", "snakemake", "--configfile", "config/smoke.yaml", *arguments],
             cwd=self.folder,
+            env=os.environ | kernels,  # copies share what they compiled
             capture_output=True,
             text=True,
             timeout=600,  # against a hang; a busy machine takes several times the usual

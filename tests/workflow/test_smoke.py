@@ -17,9 +17,9 @@ from reproduction.jobs import artifact
 from support import ROOT
 
 RESULTS = "results/smoke"
-FIGURES = [f"figure_{name}" for name in ("1", "2a", "2b", *"3456789", "10", "12")]
+FIGURES = [f"figure_{name}" for name in ("1", "2a", "2b", *"3456789", "10", "12", "13")]
 TABLES = [
-    f"table_{name}" for name in (*"12345679", "7b", "10", "potentials", "errata", "time_step")
+    f"table_{name}" for name in (*"12345679", "7b", "10", "11", "potentials", "errata", "time_step")
 ]
 TABLES.append("speed_pde")
 

@@ -4,7 +4,8 @@ Floating-point operations are not reordered (no fast-math), so that results do n
 compiler vectorises a loop. Kernels release Python's global lock (GIL), so that threads run at the
 same time. Machine code is cached on disk. Numba's own cache notices a change of the file that holds
 a kernel, but not of the files that the kernel calls into. The cache folder is therefore named after
-the content of the rooms that kernels are made of.
+the content of the rooms that kernels are made of, and its parts after packages, so that copies of
+the library share one cache.
 """
 
 import hashlib
@@ -18,6 +19,7 @@ from typing import Any
 import numba
 import platformdirs
 from numba.core import event
+from numba.core.caching import UserProvidedCacheLocator
 
 from nonsmooth.progress import begin
 
@@ -48,18 +50,31 @@ def _cache_folder() -> str:
 _CACHE = _cache_folder()
 
 
+class ByPackage(UserProvidedCacheLocator):
+    """Finds machine code by the package of its source, wherever the library lies."""
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file):
+        """Return the folder inside the cache folder."""
+        folder = Path(py_file).parent
+        if not folder.is_relative_to(_PACKAGE):  # a kernel of somebody else
+            return super().get_suitable_cache_subpath(py_file)
+        return ".".join(folder.relative_to(_PACKAGE).parts)
+
+
 def kernel(function: Callable, forceinline: bool = False) -> Callable:
     """Compile a function to machine code when it is first called."""
-    # Numba reads the name of the cache folder when a function is decorated. It is restored for
-    # other users of numba.
+    # Numba reads its settings when a function is decorated. They are restored for other users of
+    # numba.
     config: Any = numba.config
-    elsewhere, config.CACHE_DIR = config.CACHE_DIR, _CACHE
+    of_others = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
+    config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = _CACHE, f"{__name__}.{ByPackage.__name__}"
     try:
         return numba.njit(
             function, cache=bool(_CACHE), nogil=True, error_model="numpy", forceinline=forceinline
         )
     finally:
-        config.CACHE_DIR = elsewhere
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = of_others
 
 
 def inlined(function: Callable) -> Callable:

@@ -18,10 +18,18 @@ with compilation.announced(kernel):
 """
 
 
-def run(library, **environment):
+OF_THE_LIBRARY = """
+import numpy as np
+from nonsmooth.paths.kernels.panel import flush
+flush(np.zeros((20, 1)), np.zeros((20, 1)), 1)
+print(sum(flush.stats.cache_hits.values()))
+"""
+
+
+def run(library, source=FIRST, **environment):
     """Compile a kernel in a process of its own, with a library in some folder."""
     program = library / "first.py"
-    program.write_text(FIRST)
+    program.write_text(source)
     return subprocess.run(
         [sys.executable, str(program)],
         env=os.environ | {"PYTHONPATH": str(library)} | environment,
@@ -67,3 +75,12 @@ def test_without_any_folder_there_is_no_cache_and_a_line_says_so(library, tmp_pa
         "nonsmooth: compiling the simulation, every time; "
         "set NUMBA_CACHE_DIR to a folder that can be written to"
     ]
+
+
+def test_copies_of_the_library_share_what_they_compiled(library, tmp_path):
+    """Machine code is found by its package: the same source elsewhere loads it."""
+    twin = tmp_path / "twin"
+    shutil.copytree(library, twin)
+    kept = str(tmp_path / "kept")
+    hits = [run(folder, OF_THE_LIBRARY, NUMBA_CACHE_DIR=kept).stdout for folder in (library, twin)]
+    assert hits == ["0\n", "1\n"]
