@@ -28,6 +28,16 @@ def ergodic_scenes(config: dict) -> dict[str, dict]:
     return {name: scenes[name]["scene"] for name in config["theorems"]["ergodicity"]["scenes"]}
 
 
+def of_growing_n(config: dict) -> dict[str, dict]:
+    """Return the parameters of the scenes of table 12 by their names, at their smallest n."""
+    rates = config["rates"]
+    smallest = rates["crossing"]["smallest"]
+    return {
+        name: rates["scenes"][name]["scene"] | {"n": smallest[name]}
+        for name in rates["crossing"]["scenes"]
+    }
+
+
 def shards(topic: dict) -> list[int]:
     """List the shards of a Monte Carlo section of the configuration."""
     return list(range(ceil(topic["paths"] / topic["shard"])))

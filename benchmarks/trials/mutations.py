@@ -359,6 +359,8 @@ MISFITS = [
     ("scene", ("density", "scenes"), ["no_such_scene"]),
     ("scene", ("limit_theorem", "scenes"), ["friction"]),
     ("scene", ("theorems", "ergodicity", "scenes"), ["obstacle_langevin"]),
+    ("scene", ("rates", "crossing", "scenes"), ["obstacle_langevin"]),
+    ("scene", ("rates", "crossing", "scenes"), ["friction_hamiltonian"]),
     ("scene", ("speed_against_error", "cost", "names"), ["no_such_scene"]),
     ("scene", ("variance", "scene", "noise"), "langevin"),
     ("scene", ("crossing", "scene", "model"), "obstacle"),
@@ -429,6 +431,7 @@ LEGAL = [
     (("limit_theorem", "p"), [1, 2, 3]),
     (("plasticity", "limits"), [3.5]),
     (("rates", "resolution"), 1),
+    (("rates", "crossing", "scenes"), ["friction_white"]),
     (("speed_against_error", "diagrams"), ["cost"]),
     (("hard_cases", "paths"), 100),
 ]

@@ -65,6 +65,7 @@ def paper_values(artifacts: Mapping, settings: Mapping) -> dict:
         ),
         "limit_theorem": limit_theorem(a["theorem"], s["limit_theorem"]),
         "rates": rates(a["rates"], s["limits"]),
+        "crossing_rates": crossing_rates(a["crossing_rates"], s["limits"]),
         "plasticity": plasticity(a["deformation"], a["deformation_variance"], s["plasticity"]),
         "errata": errata(a["errata"]),
         "seed": str(s["seed"]),
@@ -349,6 +350,23 @@ def rates(found: xr.Dataset, section: Mapping) -> dict:
             str(scene): {kind: exponent(kind, scene) for kind in ("pathwise", "weak")}
             for scene in found["scene"].values
         },
+    }
+
+
+def crossing_rates(runs: list[xr.Dataset], section: Mapping) -> dict:
+    """Return the sizes of table 12, and the exponents of n of its scenes."""
+    crossing = section["crossing"]
+    found = []
+    for name, run in zip(crossing["scenes"], runs, strict=True):
+        scene = section["scenes"][name]["scene"]
+        value, error = float(run["exponent"]), float(run["exponent_error"])
+        spelt = Quoted(f"{value:.2f} plus.minus {error:.2f}", value, error, BOUND)
+        found.append({"model": _words(scene["model"]), "noise": scene["noise"], "exponent": spelt})
+    return {
+        "p": _short(crossing["p"]),
+        "horizon": _short(crossing["horizon"]),
+        "ratio": _short(crossing["ratio"]),
+        "exponents": found,
     }
 
 

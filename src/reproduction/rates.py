@@ -1,7 +1,8 @@
 """How fast a penalized scene approaches its non-smooth limit as n grows, on paths and in law.
 
-The penalized scene and the limit are driven by the same Brownian path and simulated with the same
-steps, so that errors of the steps that both share cancel in the difference.
+In simulations the penalized scene and the limit are driven by the same Brownian path with the same
+steps, so that errors of the steps that both share cancel in the difference. Where probabilities are
+solved for, the limit need not be known.
 """
 
 import math
@@ -138,3 +139,55 @@ def slope(
     by_errors = stats.norm.ppf(1 - level / 2) / math.sqrt(spread)
     by_scatter = stats.t.ppf(1 - level / 2, freedom) * math.sqrt(scatter / spread)
     return float(found), float(max(by_errors, by_scatter))
+
+
+def power_of_n(
+    ratio: float, value: ArrayLike, error: ArrayLike
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Lay value = limit + C n^exponent through the three largest n.
+
+    The differences of neighbours fall by the same power as the distance to the limit.
+
+    Parameters
+    ----------
+    ratio : float
+        Of each n to the one before, at least 4.
+    value, error : array_like, shape (k,)
+        At k >= 4 increasing n, with bounds of their errors.
+
+    Returns
+    -------
+    exponent, limit : (float, float)
+        Each with its error. That of the exponent is what the errors of the values can change in
+        it, and how far the exponent of the three n before the largest one may be from it. If the
+        next order falls by the factor n^(-1/2) or faster, it is a bound. That of the limit is what
+        both kinds of errors change in it.
+
+    Raises
+    ------
+    ToleranceError
+        If differences of neighbours are not above their errors, or if the exponent might not be
+        negative.
+    """
+    value, error = np.asarray(value, dtype=float), np.asarray(error, dtype=float)
+    step, slack = np.diff(value)[-3:], (error[1:] + error[:-1])[-3:]
+    if np.any(np.sign(step[-1]) * step <= slack):
+        raise ToleranceError(
+            "neighbouring n change the probability by less than its error, or in different "
+            "directions; take a smaller tolerance or other n"
+        )
+    before, last = np.diff(np.log(np.abs(step))) / np.log(ratio)
+    of_logarithms = -np.log1p(-slack / np.abs(step)) / np.log(ratio)
+    # its own error; and the change from the exponent before, as large as both errors allow
+    before_by_errors, by_errors = of_logarithms[1:] + of_logarithms[:-1]
+    spread = by_errors + (abs(last - before) + by_errors + before_by_errors)
+    if last + spread >= 0:
+        raise ToleranceError(
+            f"the exponent of n is {last:.2f} with an error of {spread:.2f}, so that there might "
+            "be no limit; take a smaller tolerance or other n"
+        )
+    # the sum of all further differences, over the last one
+    rest, least, most = 1 / (ratio ** -np.array([last, last - spread, last + spread]) - 1)
+    extrapolated = abs(step[-1]) * max(rest - least, most - rest)
+    limit_error = error[-1] + rest * slack[-1] + extrapolated
+    return (last, spread), (value[-1] + rest * step[-1], limit_error)

@@ -112,7 +112,7 @@ def test_named_targets(repository):
     names = [
         *(f"figure_{k}" for k in ("1", "2a", "2b", "3", "4", "5", "6", "8", "9")),
         *("figure_10", "figure_12", "table_7b", "table_9", "table_10", "hard_cases"),
-        *("figure_13", "table_11"),
+        *("figure_13", "table_11", "table_12"),
         *(f"table_{k}" for k in range(1, 5)),
         *("table_5", "table_potentials", "table_6", "table_7", "table_errata"),
         *("figures", "tables", "paper"),

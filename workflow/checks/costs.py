@@ -33,6 +33,8 @@ POISSON = {1: (1e-10, 0.5), 2: (1e-6, 3.0), 3: (2e-4, 10.0), 4: (3e-3, 40.0)}
 POINT_SECONDS, POINT_BYTES = 1.5e-6, 400
 # paths and step of importance sampling, the fits and the halved step included
 RARE_PATHS, RARE_STEP = 40_000, 0.05
+# of a solved crossing probability, by the number of variables: benchmarks/rates
+CROSSING_SECONDS, CROSSING_BYTES = {1: 1.0, 2: 8.0}, 0.4 * GB
 # paths of a block, whose sums are kept for every time and statistic
 BLOCK, SUMS = 1000, 25 * 8
 
@@ -428,6 +430,11 @@ def _rates(topic):
         ("rates", "resolution"): 1 / topic["resolution"],
     }
     yield Cost(sizes, JOB_SECONDS + seconds, JOB_BYTES + 64 * max(topic["paths"], weak["paths"]))
+    points, seconds = topic["crossing"]["points"], 0.0
+    for name in topic["crossing"]["scenes"]:
+        dimension = scene_of(topic["scenes"][name]["scene"] | {"n": 1.0}).dimension
+        seconds += JOB_SECONDS + points * CROSSING_SECONDS[dimension]
+    yield Cost({("rates", "crossing", "points"): points}, seconds, JOB_BYTES + CROSSING_BYTES)
 
 
 def _speed(topic):

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Iterator
+from itertools import product
 
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.scenes import symbols
@@ -13,7 +14,7 @@ from reproduction.errors import ConfigError, configured_by, dotted
 from reproduction.plasticity import yielding_oscillator
 from workflow.checks.costs import check_costs
 from workflow.checks.scenes import scene_of
-from workflow.experiment import ergodic_scenes, finite
+from workflow.experiment import ergodic_scenes, finite, of_growing_n
 
 
 def check_meaning(config: dict) -> None:
@@ -109,28 +110,38 @@ def _check_names(config):
     # table 5 and figure 8 compare with the simulations, figure 13 with their limits
     for topic in ("gamma2", "limit_theorem", "rare_crossings"):
         _check_known(config, (topic, "scenes"), simulated, "simulated ")
-    rare = config["rare_crossings"]
-    for name in rare["scenes"]:
-        if name not in rare["thresholds"]:
-            problem = f"has {name!r}, which has no rare_crossings.thresholds; add some"
-            raise _refused(config, ("rare_crossings", "scenes"), problem)
+    of_rates = list(config["rates"]["scenes"])
+    _check_known(config, ("rates", "crossing", "scenes"), of_rates, of="rates")
+    for topic, own in (
+        (("rare_crossings",), ["thresholds"]),
+        (("rates", "crossing"), ["thresholds", "smallest", "tolerances"]),
+    ):
+        section = _value(config, topic)
+        for name, key in product(section["scenes"], own):
+            if name not in section[key]:
+                problem = f"has {name!r}, which has no {dotted((*topic, key))}; add it there"
+                raise _refused(config, (*topic, "scenes"), problem)
     for key in (
         ("density", "scenes"),
         ("theorems", "ergodicity", "scenes"),
         ("speed_against_error", "cost", "names"),
     ):
         _check_known(config, key, known)
-    for name, parameters in ergodic_scenes(config).items():
-        if scene_of(parameters).dimension > 2:
-            problem = f"has {name!r}, of more than two state variables; choose others"
-            raise _refused(config, ("theorems", "ergodicity", "scenes"), problem)
+    for key, scenes in (
+        (("theorems", "ergodicity", "scenes"), ergodic_scenes(config)),
+        (("rates", "crossing", "scenes"), of_growing_n(config)),
+    ):
+        for name, parameters in scenes.items():
+            if scene_of(parameters).dimension > 2:
+                problem = f"has {name!r}, of more than two state variables; choose others"
+                raise _refused(config, key, problem)
 
 
-def _check_known(config, key, choice, kind=""):
+def _check_known(config, key, choice, kind="", of="the sweep"):
     for name in _value(config, key):
         if name not in choice:
             raise ConfigError(
-                f"{dotted(key)} has {shown(name)}, which is not a {kind}scene of the sweep; "
+                f"{dotted(key)} has {shown(name)}, which is not a {kind}scene of {of}; "
                 f"choose from {', '.join(choice)}",
                 key=key,
             )

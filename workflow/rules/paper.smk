@@ -6,7 +6,7 @@ FIGURES = [
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *["table_7b", "table_9", "table_10", "table_11", "table_errata", "table_potentials"],
+    *["table_7b", "table_9", "table_10", "table_11", "table_12", "table_errata", "table_potentials"],
     "table_time_step",
 ]
 
@@ -41,6 +41,7 @@ rule values:
         deformation=rules.check_plasticity.output[0],
         deformation_variance=rules.plasticity_variance.output[0],
         rates=rules.measure_rates.output[0],
+        crossing_rates=rules.table_12.input.crossing,
         printed=own("paper/printed.yaml"),
     output:
         "<results>/paper/values.json",

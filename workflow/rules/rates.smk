@@ -1,4 +1,4 @@
-# Figure 12, table 10: distances of penalized scenes to their limits n -> infinity.
+# Figure 12, tables 10 and 12: distances of penalized scenes to their limits n -> infinity.
 
 
 rule measure_rates:
@@ -39,7 +39,37 @@ rule table_10:
         "../scripts/rates/table_10.py"
 
 
+rule rates_crossing:
+    """Solve for crossing probabilities of {wildcards.scene} at growing n"""
+    output:
+        "<results>/rates/crossing/{scene}.nc",
+    # with two variables it takes long, and must not be the last
+    priority: 150
+    params:
+        **settings("rates/scenes/{scene}", "scene"),
+        **settings("rates/crossing", "p", "horizon", "ratio", "points", first="smallest/{scene}"),
+        **settings("rates/crossing", threshold="thresholds/{scene}", tol="tolerances/{scene}"),
+    script:
+        "../scripts/rates/crossing.py"
+
+
+rule table_12:
+    """Typeset table 12, crossing probabilities as n grows"""
+    input:
+        crossing=expand(
+            "<results>/rates/crossing/{scene}.nc", scene=config["rates"]["crossing"]["scenes"]
+        ),
+    output:
+        table("table_12"),
+    params:
+        **settings("rates", "scenes"),
+        **settings("rates/crossing", "thresholds", names="scenes"),
+    script:
+        "../scripts/rates/table_12.py"
+
+
 rule rates:
     input:
         rules.figure_12.output,
         rules.table_10.output,
+        rules.table_12.output,

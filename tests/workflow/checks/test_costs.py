@@ -19,7 +19,7 @@ MEASURED = {
     "gamma2": (146, 468),
     "limit_theorem": (30, 294),
     "plasticity": (27, 331),
-    "rates": (13, 399),
+    "rates": (126, 536),
     "sweep": (150, 354),
     "theorems": (14, 205),
     "trajectories": (6, 291),
