@@ -6,6 +6,7 @@ discretised on half of a tensor grid. `docs/methods/boundary_layer.md` has the d
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg
@@ -17,7 +18,7 @@ from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.combination_technique import combined
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.grids.tensor_grid import direct_solver, fitted
+from nonsmooth.grids.tensor_grid import around_start, direct_solver, fitted
 from nonsmooth.grids.tuning import COMBINATION_TECHNIQUE
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics import gamma2_on_grids
@@ -153,6 +154,7 @@ def _poisson_at_start(scene, tol):
         return value, tuning.TWO_VARIABLES.rounding * abs(value)
 
     grid = fitted(scene, tuning.TWO_VARIABLES.depth, 1)
+    grid = replace(grid, ends=around_start(scene, grid.ends))
     found = uniform_refinement.refined(grid, solve, lambda error, _: error / tol)
     return float(found.value), float(found.error)
 

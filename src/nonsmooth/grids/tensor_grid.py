@@ -146,6 +146,15 @@ def fitted(scene: Scene, depth: float, level: int) -> Grid:
     return _with_best_shift(scene, grid) if len(grid.levels) > 2 else grid
 
 
+def around_start(scene: Scene, ends: Mapping[Symbol, float]) -> dict[Symbol, float]:
+    """Half widths of a box that contains another one and the start, which is not at its edge."""
+    share = tuning.TENSOR_GRIDS.around
+    return {
+        symbol: max(end, share * abs(scene.start.get(symbol.name, 0.0)))
+        for symbol, end in ends.items()
+    }
+
+
 def _extrapolated(nodes, masses, depth):
     """Half width at a depth; beyond what coarse grids resolve, tails are taken to be normal."""
     chosen = tuning.TENSOR_GRIDS

@@ -79,6 +79,7 @@ class TensorGrids:
     tail: float = 1e-3
     normal_tail: float = 3.29  # derived: standard deviations beyond which a normal law has `tail`
     widening: float = 1.5  # chosen: largest factor by which one fit may widen the box
+    around: float = 1.25  # chosen: a box that contains the start reaches so many times as far
     # chosen: largest number of grid points by that of variables, some minutes and gigabytes
     largest: Mapping[int, int] = field(
         default_factory=lambda: {2: 120_000, 3: 600_000, 4: 2_500_000}

@@ -13,6 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.direct_solver import DirectSolver
 from nonsmooth.grids.elements import continuous, discontinuous
 from nonsmooth.grids.generator import evaluate, start_row
@@ -20,7 +21,7 @@ from nonsmooth.grids.grading import distinct, graded, mirrored
 from nonsmooth.grids.mesh.axes import variables
 from nonsmooth.grids.mesh.edges import kinks
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.grids.tensor_grid import fitted
+from nonsmooth.grids.tensor_grid import around_start, fitted
 from nonsmooth.kinetic import tuning
 from nonsmooth.scenes.scene import Scene
 
@@ -95,13 +96,23 @@ class Scattering:
 
 
 def boxed(scene: Scene) -> dict:
-    """Half widths of a box that contains the invariant density and the start."""
-    settings = tuning.PLANE_ORDINATES
-    ends = fitted(scene, settings.depth, 0).ends
-    return {
-        symbol: max(end, settings.start * abs(scene.start.get(symbol.name, 0.0)))
-        for symbol, end in ends.items()
-    }
+    """Half widths of a box that contains the invariant density and the start.
+
+    Raises
+    ------
+    ToleranceError
+        If the start is outside of that density: functions on the grids are weighted by it, and all
+        levels may agree on a wrong probability.
+    """
+    ends = fitted(scene, tuning.PLANE_ORDINATES.depth, 0).ends
+    for symbol, end in ends.items():
+        start = scene.start.get(symbol.name, 0.0)
+        if abs(start) > end:
+            raise ToleranceError(
+                f"the start {symbol} = {start:g} is too far in the tails, beyond {end:.2g}, where "
+                "grids of two variables are not accurate; start nearer or use method='monte_carlo'"
+            )
+    return around_start(scene, ends)
 
 
 def plane_ordinates(

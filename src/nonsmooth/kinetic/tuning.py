@@ -68,7 +68,6 @@ class PlaneOrdinates:
     """Tensor grids of two state variables."""
 
     depth: float = 14.0  # derived: outside the box the density is exp(-14) = 8e-7 of its maximum
-    start: float = 1.25  # chosen: the box contains so many times the start
     coarsest: float = 9.0  # chosen: the half axis over the finest element, if noise drives g, ...
     fast: float = 1.5  # chosen: ... which is at most so many sigma sqrt(t)
     outer: float = 0.4  # chosen: an edge in the outermost element, over the end of the axis

@@ -135,13 +135,9 @@ def _with_neighbours(times):
 
 def first_grid(scene: Scene, tol: float) -> Grid:
     """Return the coarsest grid. Its box holds the invariant density and the starting point."""
-    chosen = tuning.MOMENTS_ON_GRIDS
     grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
-    ends = {
-        symbol: max(end, chosen.around * abs(scene.start.get(symbol.name, 0.0)))
-        for symbol, end in grid.ends.items()
-    }
-    return replace(grid, ends=ends).at_level(chosen.coarsest)
+    ends = tensor_grid.around_start(scene, grid.ends)
+    return replace(grid, ends=ends).at_level(tuning.MOMENTS_ON_GRIDS.coarsest)
 
 
 def _affordable(scene, grid):

@@ -51,7 +51,6 @@ class MomentsOnGrids:
     rounding: float = 3e-11  # fitted: relative rounding error; linear scenes show up to 9e-12
     growing: float = 1e-12  # chosen: relative rate above which a mode grows, beyond rounding
     apart: float = 1.8  # chosen: ratio of times at which the oscillation of errors is sampled
-    around: float = 1.25  # chosen: the box reaches at least to the start times this
 
 
 @dataclass(frozen=True)

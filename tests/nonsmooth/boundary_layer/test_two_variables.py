@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
+from nonsmooth.boundary_layer.two_variables import layer_constants
 
 
 @pytest.mark.slow
@@ -44,6 +45,20 @@ def test_yielding_displacement():
         for g in ("y", "plastic_strain_rate")
     )
     assert abs(total.value - (plastic.value - 1)) <= total.error + plastic.error + 1e-4
+
+
+@pytest.mark.slow
+def test_a_start_far_out():
+    """At the start u is the mean of int g after a long time, also beyond the density's grids.
+
+    The sample is off by less than 4.5 standard errors; false alarms 7e-6.
+    """
+    scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(1.0), n=10, start={"y": 30.0})
+    constants, errors = layer_constants(scene, 0.1)
+    run = ns.simulate(scene, horizon=20.0, step=0.01, paths=4096, seed=3)
+    allowed = errors.u + 4.5 * run["mean_error"][-1] + abs(run["mean_bias"][-1])
+    assert abs(constants.u - run["mean"][-1]) < allowed
+    assert allowed < 0.3
 
 
 def test_bounded_observable():

@@ -17,6 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import LaplaceProblem
+from nonsmooth.errors import ToleranceError
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,11 @@ def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
     Returns
     -------
     SaddlePoints
+
+    Raises
+    ------
+    ToleranceError
+        If F is no transform of a probability on a coarse grid.
     """
     log_z, log_F, growth = _samples(problem, times)
     # -log F grows at most by the factor exp(spacing) from one sample to the next. If the second one
@@ -105,6 +111,12 @@ def _samples(problem, times):
         depth = max(1.0, -(1 + settings.spacing) * log_F[-1]) if log_F else 1.0
         transform = problem.coarse_transform(z, depth)
         value = transform(z).real
+        if not -settings.inexact <= value <= 1 + settings.inexact:
+            raise ToleranceError(
+                f"the Laplace transform of the time of passage is {value:.2g} on a coarse grid and "
+                "not between 0 and 1, as where a path starts far in the tails; start nearer or use "
+                "method='monte_carlo'"
+            )
         if value < problem.settings.least_transform:
             break
         log_F.append(np.log(value))

@@ -30,6 +30,7 @@ class SaddlePoints:
     by |z| t sin(angle) in the exponent, while |F(z)| may grow. It is measured at some angles.
     """
 
+    inexact: float = 0.05  # chosen: so far outside of [0, 1] is no value of F on a coarse grid
     angles: tuple[float, ...] = (0.2, 0.4, 0.67)  # chosen: at which the growth of |F| is measured
     steepest: float = 0.0  # chosen: angle of a contour if |F| grows too much at all of them
     tamed: float = 0.3  # chosen: largest growth over fall on a contour through the saddle point

@@ -6,6 +6,7 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
+from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.adding_doubling import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 
@@ -14,6 +15,22 @@ SCENES = {
     "plastic": (PLASTIC_STRAIN, 0.3),
     "obstacle": (OBSTACLE, 0.8),
 }
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        ({"y": 11.0}, "the start y = 11 is too far in the tails, beyond 3.7"),
+        ({"x": 2.16, "y": 3.7}, "on a coarse grid and not between 0 and 1"),
+    ],
+)
+def test_starts_in_the_tails(start, message):
+    """Refused, where all levels agreed that nothing crosses; without a method they are counted."""
+    scene = OBSTACLE.with_n(10).with_start(start)
+    with pytest.raises(ToleranceError, match=message):
+        deterministic_crossing(scene, -4.0, 4.0, np.array([8.0, 20.0]), 1e-3)
+    found = ns.crossing_probability(scene, 4.0, [8.0, 20.0], seed=1)
+    assert found.attrs["method"] == "monte_carlo"
 
 
 @pytest.mark.slow
