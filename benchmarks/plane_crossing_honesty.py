@@ -49,14 +49,14 @@ def asked(scene, interval, times, tol):
     """Probabilities, their errors, seconds, and whether `tol` was met."""
     began = time.process_time()
     try:
-        found, met = deterministic_crossing(scene, *interval, times, tol), True
+        found, met = deterministic_crossing(scene, np.array([interval]), times, tol), True
     except NonsmoothError as error:
         found, met = getattr(error, "result", None), False
         print(f"  refused: {error}", file=sys.stderr, flush=True)
     seconds = time.process_time() - began
     if found is None:
         return None, None, seconds, met
-    return found["probability"], found["probability_error"], seconds, met
+    return found["probability"][0], found["probability_error"][0], seconds, met
 
 
 def compare(seed, tol, paths):

@@ -1,10 +1,11 @@
 """Probabilities of a crossing over horizons, as the public functions return them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 import xarray as xr
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.results import dataset
 
 _TITLES = {
@@ -61,3 +62,36 @@ def curves(
         method=method,
         **attributes,
     )
+
+
+def one_by_one(solvers: Iterable[Callable[[], dict]]) -> dict[str, np.ndarray]:
+    """Solve for one threshold after the other.
+
+    Parameters
+    ----------
+    solvers : iterable of callable
+        Return the `values` of `curves` for one threshold each, shape (k,).
+
+    Returns
+    -------
+    dict
+        The values of all, shape (m, k).
+
+    Raises
+    ------
+    ToleranceError
+        If some miss the tolerance: the error of the first, with all answers as its `result`.
+    """
+    found, missed = [], []
+    for solve in solvers:
+        try:
+            found.append(solve())
+        except ToleranceError as refused:
+            if refused.result is None:
+                raise
+            found.append(refused.result)  # type: ignore[arg-type]
+            missed.append(refused)
+    values = {name: np.array([own[name] for own in found]) for name in found[0]}
+    if missed:
+        raise ToleranceError(str(missed[0]), values)
+    return values

@@ -28,7 +28,7 @@ from nonsmooth.checks import (
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
-from nonsmooth.crossing.curves import curves
+from nonsmooth.crossing.curves import curves, one_by_one
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.leading.choice import leading_is_quicker
 from nonsmooth.crossing.leading.importance_sampling import importance_sampled_crossing
@@ -132,7 +132,8 @@ def crossing_probability(
         the method does not know is part of it. The probability asked for is between `lower` and
         `upper`. Several thresholds are a dimension `threshold` before it, with the coordinates
         `threshold_lower` and `threshold_upper` and, if all are numbers b, these as `threshold`. One
-        method serves all of them, and by Monte Carlo the same paths.
+        method serves all of them, and by Monte Carlo the same paths. Solved ones of one variable
+        share grids, which changes them within their errors.
 
         - ``"deterministic"``: the error is estimated from two resolutions. The complement of the
           probability is `survival` with `survival_error`, for one variable to relative accuracy.
@@ -262,8 +263,9 @@ def _attempts(scene, thresholds, horizons, p, given):
         fast = pilot <= choice.pilot_share * most and least <= most
         return [("monte_carlo", {"most": most})] if fast else []
 
-    solves = windows * len(thresholds)  # each threshold is solved by itself
-    attempts = sampled(solves * choice.seconds_solved[scene.dimension - 1]) + attempts
+    kind = scene.dimension - 1
+    solves = windows * (1 + choice.one_more[kind] * (len(thresholds) - 1))
+    attempts = sampled(solves * choice.seconds_solved[kind]) + attempts
     covered = scene.is_line and scene.is_odd() and not scene.grows_too_fast
     if covered and tol * p**2 >= choice.least_corrected:
         seconds = choice.seconds_corrected * len(thresholds)
@@ -300,7 +302,7 @@ def _asymptotic(scene, thresholds, horizons, p, seed, threads):
                 error = np.minimum(np.abs(value - nearer) + rest + own, error)
         return {"probability": value, "probability_error": error, "limit_error": own}
 
-    return _each(one, thresholds)
+    return _without_attributes(lambda: one_by_one(partial(one, tuple(t)) for t in thresholds))
 
 
 def _require_centred(scene, gamma2, found):
@@ -343,10 +345,8 @@ def _sampled(
 
 
 def _deterministic(scene, thresholds, horizons, p, seed, threads, tol=None):
-    times, scale = p * horizons, np.sqrt(p)
-    return _each(
-        lambda pair: deterministic_crossing(scene, *(scale * np.array(pair)), times, tol),
-        thresholds,
+    return _without_attributes(
+        lambda: deterministic_crossing(scene, np.sqrt(p) * thresholds, p * horizons, tol)
     )
 
 
@@ -357,27 +357,12 @@ def _corrected(scene, thresholds, horizons, p, seed, threads, order=1, tol=None)
             lambda found: {"probability": found[0], "probability_error": found[1]},
         )
 
-    return _each(one, thresholds)
+    return _without_attributes(lambda: one_by_one(partial(one, tuple(t)) for t in thresholds))
 
 
-def _each(solve, thresholds):
-    """Solve for one threshold after the other; the answer of a method that has no attributes.
-
-    If some miss the tolerance, the error is that of the first, with all answers as its result.
-    """
-    found, missed = [], []
-    for threshold in thresholds:
-        try:
-            found.append(solve(tuple(threshold)))
-        except ToleranceError as refused:
-            if refused.result is None:
-                raise
-            found.append(refused.result)
-            missed.append(refused)
-    values = {name: np.array([own[name] for own in found]) for name in found[0]}
-    if missed:
-        raise ToleranceError(str(missed[0]), (values, {}))
-    return values, {}
+def _without_attributes(solve):
+    """Return the answer of a method that has no attributes."""
+    return answered(solve, lambda values: (values, {}))
 
 
 # checks of the parameters that only some methods have

@@ -13,6 +13,8 @@ class MethodChoice:
     # seconds of the deterministic method for one and for two variables, for each factor `window`
     # between the first and the last time; fitted: as above
     seconds_solved: tuple[float, float] = (0.4, 8.0)
+    # the same for one more threshold, over that of the first; fitted: one variable shares modes
+    one_more: tuple[float, float] = (0.2, 1.0)
     window: float = 20.0
     seconds_corrected: float = 0.05  # of the corrected formula; fitted: as above
     # least error of the corrected formula of the order 3, times p^2; fitted: as above

@@ -16,8 +16,7 @@ and doubling of slabs finds. The manual page is
 - `ordinates_line.ordinates`: nodes of one state variable, in the space L^2(m).
 - `ordinates_plane.plane_ordinates`, `ordinates_gibbs.gibbs_ordinates`: nodes of two, in general
   and where the invariant density is known.
-- `case_modes.first_passage`, `case_modes.by_exit`, `case_modes.waves`: elementary solutions, for
-  one variable.
+- `case_modes.modes`: elementary solutions, for one variable.
 - `adding_doubling.slabs`, `adding_doubling.fields`: reflection and transmission, and solutions at
   many depths, for two.
 - `reduced_ordinates.reduced`: the basis that they span, and the transform in it.

@@ -37,7 +37,7 @@ class Modes:
     start: np.ndarray
 
 
-def modes(grid: Ordinates, z: complex) -> tuple[Modes, Modes]:
+def modes(grid: Ordinates, z: complex) -> "ModesOfWalls":
     """Compute the modes that decay from the upper and from the lower wall.
 
     On a half grid, those of the lower wall are the mirror images of the others.
@@ -49,7 +49,7 @@ def modes(grid: Ordinates, z: complex) -> tuple[Modes, Modes]:
 
     Returns
     -------
-    upper, lower : Modes
+    ModesOfWalls
     """
     moving = grid.moving
     g = grid.g[moving]
@@ -74,7 +74,8 @@ def modes(grid: Ordinates, z: complex) -> tuple[Modes, Modes]:
     leaving = np.sign(g)[:, None] * odd_parts
     own, other = even_parts[moving] + leaving, even_parts[moving] - leaving
     weights = np.sqrt(grid.masses[moving])[:, None]
-    return (
+    return ModesOfWalls(
+        grid,
         Modes(rates, weights * own, weights * other, even_start + odd_start),
         Modes(rates, weights * own, weights * other, even_start - odd_start),
     )
@@ -136,7 +137,7 @@ def _of_all(grid, resolvent, balance):
             rates[chosen], vectors[leaves][:, chosen], vectors[~leaves][:, chosen], start[chosen]
         )
 
-    return decaying(decay, rates, up), decaying(~decay, -rates, ~up)
+    return ModesOfWalls(grid, decaying(decay, rates, up), decaying(~decay, -rates, ~up))
 
 
 @dataclass(frozen=True)
@@ -162,97 +163,104 @@ class Waves:
         return (far * self.strengths) @ near.T
 
 
-def first_passage(grid: Ordinates, z: complex, lower: float, upper: float) -> complex:
-    """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
+@dataclass(frozen=True)
+class ModesOfWalls:
+    """The modes at a place z, which serve walls at any distances.
 
-    Parameters
+    Attributes
     ----------
     grid : Ordinates
-    z : complex
-    lower, upper : float
-        Of opposite signs; one may be infinite.
-
-    Returns
-    -------
-    complex
+    above, below : Modes
+        Those that decay from the upper and from the lower wall.
     """
-    above, below = waves(grid, z, lower, upper)
-    return sum(w.at(d) for w, d in ((above, upper), (below, -lower)) if np.isfinite(d))
 
+    grid: Ordinates
+    above: Modes
+    below: Modes
 
-def by_exit(grid: Ordinates, z: complex, lower: float, upper: float) -> np.ndarray:
-    """E exp(-z tau) of the paths that leave through the upper and through the lower wall.
+    def first_passage(self, lower: float, upper: float) -> complex:
+        """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
 
-    Parameters
-    ----------
-    grid, z, lower, upper
-        As for `first_passage`.
+        Parameters
+        ----------
+        lower, upper : float
+            Of opposite signs; one may be infinite.
 
-    Returns
-    -------
-    numpy.ndarray, shape (2,)
-    """
-    if np.isinf(upper - lower):
-        return np.array([0.0, 1.0] if np.isinf(upper) else [1.0, 0.0]) * first_passage(
-            grid, z, lower, upper
+        Returns
+        -------
+        complex
+        """
+        above, below = self.waves(lower, upper)
+        return sum(w.at(d) for w, d in ((above, upper), (below, -lower)) if np.isfinite(d))
+
+    def by_exit(self, lower: float, upper: float) -> np.ndarray:
+        """E exp(-z tau) of the paths that leave through the upper and through the lower wall.
+
+        Parameters
+        ----------
+        lower, upper : float
+            Of opposite signs, both finite.
+
+        Returns
+        -------
+        numpy.ndarray, shape (2,)
+        """
+        grid, above, below = self.grid, self.above, self.below
+        weights = np.sqrt(grid.masses[grid.moving])
+        if grid.mirrored:
+            even, odd = (
+                np.linalg.solve(above.own + sign * _arriving(above, upper - lower), weights / 2)
+                for sign in (1, -1)
+            )
+            strengths = np.block([[even + odd, even - odd], [even - odd, even + odd]])
+            strengths = strengths.reshape(2, -1).T
+        else:
+            leaves = grid.g[grid.moving] > 0
+            right = np.zeros((len(weights), 2))
+            many = len(above.rates)
+            right[:many, 0], right[many:, 1] = weights[leaves], weights[~leaves]
+            strengths = np.linalg.solve(_at_both_walls(above, below, upper - lower), right)
+        start = np.append(
+            above.start * np.exp(-above.rates * upper), below.start * np.exp(below.rates * lower)
         )
-    above, below = modes(grid, z)
-    weights = np.sqrt(grid.masses[grid.moving])
-    if grid.mirrored:
-        even, odd = (
-            np.linalg.solve(above.own + sign * _arriving(above, upper - lower), weights / 2)
-            for sign in (1, -1)
+        return start @ strengths
+
+    def waves(self, lower: float, upper: float) -> tuple[Waves, Waves]:
+        """E exp(-z tau) as a function of the place in (lower, upper) at which int_0^t g begins.
+
+        Parameters
+        ----------
+        lower, upper : float
+            As for `first_passage`.
+
+        Returns
+        -------
+        above, below : Waves
+            Of the upper and of the lower wall; none where the wall is infinitely far.
+        """
+        grid, above, below = self.grid, self.above, self.below
+        g, weights = grid.g[grid.moving], np.sqrt(grid.masses[grid.moving])
+        up, down = (slice(None),) * 2 if grid.mirrored else (g > 0, g < 0)
+        none = Waves(np.zeros(0), np.zeros(0))
+        if np.isinf(lower):
+            return _of_one_wall(above, below, np.abs(g[up]), np.abs(g[down]), weights[up]), none
+        if np.isinf(upper):
+            return none, _of_one_wall(below, above, np.abs(g[down]), np.abs(g[up]), weights[down])
+        if grid.mirrored:  # by symmetry the modes of both walls have the same strengths
+            strength = np.linalg.solve(above.own + _arriving(above, upper - lower), weights)
+            strengths = [strength, strength]
+        else:
+            strengths = np.split(
+                np.linalg.solve(
+                    _at_both_walls(above, below, upper - lower),
+                    np.concatenate([weights[up], weights[down]]),
+                ),
+                [len(above.rates)],
+            )
+        return (
+            Waves(above.start * strengths[0], above.rates),
+            Waves(below.start * strengths[1], below.rates),
         )
-        strengths = np.block([[even + odd, even - odd], [even - odd, even + odd]])
-        strengths = strengths.reshape(2, -1).T
-    else:
-        leaves = grid.g[grid.moving] > 0
-        right = np.zeros((len(weights), 2))
-        many = len(above.rates)
-        right[:many, 0], right[many:, 1] = weights[leaves], weights[~leaves]
-        strengths = np.linalg.solve(_at_both_walls(above, below, upper - lower), right)
-    start = np.append(
-        above.start * np.exp(-above.rates * upper), below.start * np.exp(below.rates * lower)
-    )
-    return start @ strengths
-
-
-def waves(grid: Ordinates, z: complex, lower: float, upper: float) -> tuple[Waves, Waves]:
-    """E exp(-z tau) as a function of the place in (lower, upper) at which int_0^t g begins.
-
-    Parameters
-    ----------
-    grid, z, lower, upper
-        As for `first_passage`.
-
-    Returns
-    -------
-    above, below : Waves
-        Of the upper and of the lower wall; none where the wall is infinitely far.
-    """
-    above, below = modes(grid, z)
-    g, weights = grid.g[grid.moving], np.sqrt(grid.masses[grid.moving])
-    up, down = (slice(None),) * 2 if grid.mirrored else (g > 0, g < 0)
-    none = Waves(np.zeros(0), np.zeros(0))
-    if np.isinf(lower):
-        return _of_one_wall(above, below, np.abs(g[up]), np.abs(g[down]), weights[up]), none
-    if np.isinf(upper):
-        return none, _of_one_wall(below, above, np.abs(g[down]), np.abs(g[up]), weights[down])
-    if grid.mirrored:  # by symmetry the modes of both walls have the same strengths
-        strength = np.linalg.solve(above.own + _arriving(above, upper - lower), weights)
-        strengths = [strength, strength]
-    else:
-        strengths = np.split(
-            np.linalg.solve(
-                _at_both_walls(above, below, upper - lower),
-                np.concatenate([weights[up], weights[down]]),
-            ),
-            [len(above.rates)],
-        )
-    return (
-        Waves(above.start * strengths[0], above.rates),
-        Waves(below.start * strengths[1], below.rates),
-    )
 
 
 def _arriving(wall, distance):

@@ -38,14 +38,12 @@ def logarithmic_derivative(
     """
     for step in tuning.DIFFERENCES.steps:
         accuracy = tol * step * tuning.DIFFERENCES.share
-        below, above = (
-            [_solved(question.changed(parameter, side * k * step), accuracy) for k in (1, 2, 3)]
-            for side in (-1, 1)
-        )
-        (low, low_error), (high, high_error) = (
-            np.moveaxis(np.array(side), 1, 0) for side in (below, above)
-        )
-        value, error = central(low, high, low_error + high_error, step)
+        changed = [question.changed(parameter, k * step) for k in (-1, -2, -3, 1, 2, 3)]
+        # thresholds of one scene are solved together
+        groups = [changed] if parameter == "threshold" else [[one] for one in changed]
+        solved = [_solved(group, accuracy) for group in groups]
+        W, inexact = (np.concatenate(parts) for parts in zip(*solved, strict=True))
+        value, error = central(W[:3], W[3:], inexact[:3] + inexact[3:], step)
         if np.all(error <= tol):
             return value, error
     raise ToleranceError(
@@ -55,9 +53,11 @@ def logarithmic_derivative(
     )
 
 
-def _solved(question, tol):
+def _solved(questions, tol):
+    """Probabilities and errors of questions that differ in their thresholds alone."""
+    levels = np.array([question.levels for question in questions])
     try:
-        found = deterministic_crossing(question.scene, *question.levels, question.times, tol)
+        found = deterministic_crossing(questions[0].scene, levels, questions[0].times, tol)
     except ToleranceError as refused:  # its error is part of that of the derivative
         if refused.result is None:
             raise

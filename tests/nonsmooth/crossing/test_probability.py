@@ -5,8 +5,10 @@ import pytest
 from scipy import special
 
 import nonsmooth as ns
+from nonsmooth.crossing.first_passage import line
 from nonsmooth.errors import SceneError, ToleranceError
-from references import FRICTION, GAMMA2, W_STAR
+from nonsmooth.kinetic import case_modes
+from references import FRICTION, GAMMA2, SKEWED, W_STAR
 
 HORIZONS = np.linspace(0, 2, 11)[1:]
 
@@ -142,7 +144,7 @@ SEVERAL = (
 
 
 @pytest.mark.parametrize("thresholds", SEVERAL)
-@pytest.mark.parametrize("method", ["monte_carlo", "deterministic", "corrected", "asymptotic"])
+@pytest.mark.parametrize("method", ["monte_carlo", "corrected", "asymptotic"])
 def test_each_row_of_several_thresholds_is_that_threshold(thresholds, method):
     """To the bit, by Monte Carlo on the same paths; opposite one-sided levels included."""
     sampled = {"step": 0.05, "paths": 3_000} if method == "monte_carlo" else {}
@@ -153,6 +155,39 @@ def test_each_row_of_several_thresholds_is_that_threshold(thresholds, method):
         one = ns.crossing_probability(FRICTION, threshold, **asked)
         for name in ("probability", "probability_error"):
             assert np.array_equal(run[name][row], one[name])
+
+
+@pytest.mark.parametrize("scene", [FRICTION, pytest.param(SKEWED, marks=pytest.mark.slow)])
+def test_solved_thresholds_agree_with_each_alone(scene):
+    """To the sum of errors, though they share grids; far ones have grids of their own."""
+    thresholds, asked = [(-0.3, 0.3), (-0.4, 0.7), (-np.inf, 0.9), (-3.0, 3.0)], {"tol": 1e-4}
+    asked |= {"horizons": [0.5, 2.0], "p": 2.0, "method": "deterministic"}
+    run = ns.crossing_probability(scene, thresholds, **asked)
+    for row, threshold in enumerate(thresholds):
+        one = ns.crossing_probability(scene, threshold, **asked)
+        gap = np.abs(run["probability"][row] - one["probability"])
+        assert np.all(gap <= run["probability_error"][row] + one["probability_error"])
+
+
+@pytest.mark.slow
+def test_one_more_threshold_costs_little(monkeypatch):
+    """Eight thresholds take at most 2.5 times the modes of one, and one no more than eight."""
+    solved = []
+
+    def counted(grid, z):
+        solved.append(len(grid.nodes) ** 3)
+        return case_modes.modes(grid, z)
+
+    monkeypatch.setattr(line, "modes", counted)
+    thresholds, work = np.linspace(0.3, 1.0, 8), []
+    for asked in (thresholds, 0.3, 0.6, 1.0):
+        solved.clear()
+        ns.crossing_probability(
+            FRICTION, asked, np.linspace(0.02, 2, 20), p=10, method="deterministic", tol=1e-4
+        )
+        work.append(sum(solved))
+    assert work[0] <= 2.5 * np.mean(work[1:])
+    assert max(work[1:]) <= work[0]
 
 
 def test_coordinates_of_several_thresholds():

@@ -61,7 +61,7 @@ class TestReducedOrdinates:
         grid, thickness = of_one_variable(line), levels[1] - levels[0]
         fine, coarse = (basis(grid, thickness, accuracy) for accuracy in (1e-8, 1e-7))
         for z in (0.02, 0.5, 0.3 + 2.0j):
-            exact = case_modes.first_passage(line, z, *levels)
+            exact = case_modes.modes(line, z).first_passage(*levels)
             found, change = (made.first_passage(z, *levels) for made in (fine, coarse))
             assert abs(found - exact) <= 3 * abs(found - change) + 1e-7
             assert abs(found - exact) < 1e-5
@@ -101,7 +101,7 @@ class TestReducedOrdinates:
         The ratio 4 of the distances is met to a third, for the next order.
         """
         level, z = 0.6 * np.sqrt(10), 0.1
-        exact = case_modes.first_passage(ordinates(FRICTION, 9, 1.0), z, -level, level).real
+        exact = case_modes.modes(ordinates(FRICTION, 9, 1.0), z).first_passage(-level, level).real
         gap = []
         for theta in (10.0, 40.0):
             scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(theta, theta))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nonsmooth.kinetic.case_modes import first_passage, waves
+from nonsmooth.kinetic.case_modes import modes
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.tail_descent import tail
 from nonsmooth.kinetic.tail_equation import TailEquation, radau, reach
@@ -26,11 +26,11 @@ def test_march_against_modes(threshold):
     """March and modes agree to 1e-8 at a depth of 15, where modes have lost some digits."""
     scene, z = far(3.0), np.array([0.5, 5.0, 3 + 5j, 0.5 + 20j])
     whole = ordinates(scene, 13, 0.1)
-    expected = [first_passage(whole, w, *threshold) for w in z]
+    expected = [modes(whole, w).first_passage(*threshold) for w in z]
     out = tail(scene)
     bulk = ordinates(far(out.level), 11, 0.1)
     marched = TailEquation(out, out.law(0.0), *threshold, 11)
-    found = [marched.mean(w, *waves(bulk, w, *threshold)) for w in z]
+    found = [marched.mean(w, *modes(bulk, w).waves(*threshold)) for w in z]
     assert np.max(np.abs(np.subtract(found, expected))) < 2e-8
 
 
@@ -39,7 +39,7 @@ def test_mean_over_the_normal_law():
     out, z, threshold = tail(far(5.0)), 0.5 + 2j, (-3.0, 3.0)
     bulk = ordinates(far(out.level), 13, 0.1)
     at_once, later = (
-        TailEquation(out, out.law(time), *threshold, 13).mean(z, *waves(bulk, z, *threshold))
+        TailEquation(out, out.law(time), *threshold, 13).mean(z, *modes(bulk, z).waves(*threshold))
         for time in (0.0, out.descent)
     )
     assert out.law(out.descent).passed(3.0) < 1e-15
@@ -60,5 +60,5 @@ def test_g_that_vanishes_in_the_tail():
     out = tail(scene)
     bulk = ordinates(far(-out.level, observable="y + abs(y)"), 11, 0.1)
     marched = TailEquation(out, out.law(0.0), -0.2, 0.2, 11)
-    found = marched.mean(z, *waves(bulk, z, -0.2, 0.2))
-    assert abs(found - first_passage(ordinates(scene, 13, 0.1), z, -0.2, 0.2)) < 2e-8
+    found = marched.mean(z, *modes(bulk, z).waves(-0.2, 0.2))
+    assert abs(found - modes(ordinates(scene, 13, 0.1), z).first_passage(-0.2, 0.2)) < 2e-8

@@ -4,12 +4,15 @@ A scene becomes a first-passage problem: a `LineProblem` for one state variable,
 for two. It is solved on finer and finer levels until two of them agree.
 """
 
+from functools import partial
+
 import numpy as np
 
+from nonsmooth.crossing.curves import one_by_one
 from nonsmooth.crossing.first_passage import plane, tuning
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
-from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver
-from nonsmooth.crossing.first_passage.line import LineProblem, LineProblemFromAfar
+from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver, contour_solvers
+from nonsmooth.crossing.first_passage.line import Company, LineProblemFromAfar
 from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted
 from nonsmooth.crossing.first_passage.problem import (
     DirectProblem,
@@ -25,15 +28,18 @@ from nonsmooth.scenes.scene import Scene
 
 
 def deterministic_crossing(
-    scene: Scene, lower: float, upper: float, times: np.ndarray, tol: float | None
+    scene: Scene, intervals: np.ndarray, times: np.ndarray, tol: float | None
 ) -> dict[str, np.ndarray]:
-    """P(int_0^t g leaves (lower, upper) before t).
+    """P(int_0^t g leaves an interval (lower, upper) before t).
+
+    Intervals of one state variable share most of what is computed. Their grids then serve the most
+    demanding of them, which changes a probability within its error.
 
     Parameters
     ----------
     scene : Scene
         With the state y and white noise, or one to which `plane` applies.
-    lower, upper : float
+    intervals : numpy.ndarray, shape (m, 2)
         lower < 0 < upper, one of them possibly infinite.
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
@@ -43,7 +49,7 @@ def deterministic_crossing(
     Returns
     -------
     dict
-        `probability`, `survival`, with their errors.
+        `probability`, `survival`, with their errors; of the shape (m, k).
 
     Raises
     ------
@@ -53,9 +59,9 @@ def deterministic_crossing(
         If `tol` is not met; the best is its `result`.
     """
     if scene.is_line:
-        solve = _on_line
+        solvers = _on_line
     elif plane.applies(scene):
-        solve = _in_plane
+        solvers = _in_plane
     else:
         raise SceneError(
             "the deterministic method needs the state (y) and white noise, or two state variables "
@@ -63,8 +69,9 @@ def deterministic_crossing(
             f"({', '.join(scene.state)}) with {scene.noise.title} and n = {scene.n:g}; "
             "use method='monte_carlo'"
         )
+    tol = default_tolerance(scene) if tol is None else tol
     try:
-        return solve(scene, lower, upper, times, default_tolerance(scene) if tol is None else tol)
+        return one_by_one(solvers(scene, intervals, times, tol))
     except (np.linalg.LinAlgError, RuntimeError) as error:  # from dense and from sparse matrices
         raise ToleranceError(
             f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
@@ -79,15 +86,39 @@ def default_tolerance(scene: Scene) -> float | None:
     return tuning.PLANE.default_tolerance if plane.applies(scene) else None
 
 
-def _on_line(scene, lower, upper, times, tol):
-    """Solve for the state y with white noise."""
+def _on_line(scene, intervals, times, tol):
+    """Return what solves each interval, for the state y with white noise."""
     depth_of_start = float(depth(scene)(scene.start.get("y", 0.0)))
     if depth_of_start > tuning.FAR_START.depth:
-        return _from_afar(scene, lower, upper, times, tol)
-    return refined(LineProblem(scene, lower, upper), times, tol)
+        return [partial(_from_afar, scene, *interval, times, tol) for interval in intervals]
+    solvers = {}
+    for group in _of_similar_size(intervals):
+        problems = Company(scene, intervals[group]).problems
+        together = contour_solvers(problems, times, tol)
+        for k, problem, solver in zip(group, problems, together, strict=True):
+            solvers[k] = partial(refined, problem, times, tol, solver)
+    return [solvers[k] for k in range(len(intervals))]
 
 
-def _in_plane(scene, lower, upper, times, tol):
+def _of_similar_size(intervals):
+    """Group indices of intervals whose nearest walls are about equally near."""
+    nearest = np.min(np.abs(intervals), axis=1)
+    order = np.argsort(nearest)
+    groups = [[order[0]]]
+    for k in order[1:]:
+        if nearest[k] <= tuning.LINE_GRIDS.similar * nearest[groups[-1][0]]:
+            groups[-1].append(k)
+        else:
+            groups.append([k])
+    return groups
+
+
+def _in_plane(scene, intervals, times, tol):
+    """Return what solves each interval, for two state variables."""
+    return [partial(_one_in_plane, scene, *interval, times, tol) for interval in intervals]
+
+
+def _one_in_plane(scene, lower, upper, times, tol):
     """Solve for two state variables: early times by steps, later ones by contours."""
 
     def part_by_part(here, parts, solver):
@@ -142,12 +173,14 @@ def _from_afar(scene, lower, upper, times, tol):
 
     if not late.any() or 1 - tail.law(tail.flight).passed(distance) <= neglected:
         return whole(None)
-    problem = LineProblemFromAfar(scene, lower, upper, tail)
+    problem = LineProblemFromAfar(scene, lower, upper, tail=tail)
     # half of the tolerance is kept for what is neglected
     return answered(lambda: refined(problem, times[late] - tail.descent, tol / (2 * left)), whole)
 
 
-def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict[str, np.ndarray]:
+def refined(
+    problem: FirstPassageProblem, times: np.ndarray, tol: float, solver: Solver | None = None
+) -> dict[str, np.ndarray]:
     """Solve a problem on finer and finer levels until two of them agree.
 
     Parameters
@@ -157,18 +190,21 @@ def refined(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> dict
         Increasing, positive.
     tol : float
         Absolute error wanted.
+    solver : callable, optional
+        Of `contour_solvers`, if the problem shares what it computes with others.
 
     Returns
     -------
     dict
-        As for `deterministic_crossing`.
+        `probability`, `survival`, with their errors, shape (k,).
 
     Raises
     ------
     ToleranceError
         If `tol` is not met; the best is its `result`.
     """
-    settings, refinement = problem.settings, _Refinement(problem, times, tol)
+    settings, solver = problem.settings, solver or _solver(problem, times, tol)
+    refinement = _Refinement(problem, times, tol, solver)
     result = until_agreement(
         settings.levels[0 if tol >= settings.coarse_tolerance else 1 :],
         refinement.solution,
@@ -213,9 +249,9 @@ class _Refinement:
     A solution is a pair: the values, shape (2, k), and at which times they are new.
     """
 
-    def __init__(self, problem: FirstPassageProblem, times: np.ndarray, tol: float):
+    def __init__(self, problem: FirstPassageProblem, times: np.ndarray, tol: float, solver: Solver):
         self.problem, self.times, self.tol = problem, times, tol
-        self._solve = _solver(problem, times, tol)
+        self._solve = solver
         self._found = np.array([np.zeros(len(times)), np.ones(len(times))])
         self._wanted = np.full(len(times), True)
         self._change: float | np.ndarray = 0.0

@@ -16,7 +16,7 @@ For one variable, F is good enough to be fitted by rational functions on vertica
 those of the end.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -47,13 +47,37 @@ def contour_solver(problem: LaplaceProblem, times: np.ndarray, tol: float) -> So
         wanted, shape (k,). Solves the windows with such a time anew. Returns probability and
         survival probability, shape (2, k), and at which times they are new.
     """
-    saddles = saddle_points(problem, times)
+    return contour_solvers([problem], times, tol)[0]
 
-    def solve(level, known, wanted):
-        kind = partial(_OnVerticalLines, tol) if problem.on_vertical_lines else _Inversion
-        return kind(problem, times, saddles, level, known, wanted).run()
 
-    return solve
+def contour_solvers(
+    problems: Sequence[LaplaceProblem], times: np.ndarray, tol: float
+) -> list[Solver]:
+    """Prepare the inversion of several problems that may share what they compute.
+
+    On a vertical line they ask for grids that serve all of them.
+
+    Parameters
+    ----------
+    problems : sequence of LaplaceProblem
+        Of one kind.
+    times, tol
+        As for `contour_solver`.
+
+    Returns
+    -------
+    list of callable
+        As of `contour_solver`.
+    """
+    saddles = [saddle_points(problem, times) for problem in problems]
+    kind: Callable = _Inversion
+    if problems[0].on_vertical_lines:
+        kind = partial(_OnVerticalLines, tol, _needs(problems, times, saddles))
+
+    def solver(problem, own):
+        return lambda level, known, wanted: kind(problem, times, own, level, known, wanted).run()
+
+    return [solver(*one) for one in zip(problems, saddles, strict=True)]
 
 
 class _Inversion:
@@ -85,7 +109,7 @@ class _Inversion:
     def run(self):
         """Solve the stages one after the other."""
         settings = self.problem.settings
-        begin = int(np.searchsorted(self.saddles.bound, np.log(settings.least_probability)))
+        begin = _begin(self.problem, self.saddles)
         ends = settings.relative and self.problem.two_sided
         late = begin + self._first_small(self.known[1, begin:]) if ends else len(self.times)
         windows = self._windows_of_later(begin, late)
@@ -182,29 +206,30 @@ class _OnVerticalLines(_Inversion):
     Parameters
     ----------
     tol : float
+    needs : dict
+        What a grid has to serve, see `_needs`.
     problem, times, saddles, level, known, wanted
         As for `_Inversion`.
     """
 
-    def __init__(self, tol: float, *of_level):
+    def __init__(self, tol: float, needs: dict, *of_level):
         super().__init__(*of_level)
-        self.tol = tol
+        self.tol, self.needs = tol, needs
 
     def _windows_of_later(self, begin, end):
         """One window from where the probability is no longer small."""
-        risen = np.log(tuning.SADDLE_POINTS.risen)
-        first = max(begin, int(np.searchsorted(self.saddles.bound, risen)))
+        first = _risen(self.saddles, begin)
         return [(slice(first, end), None)] if first < end else []
 
     def _rise(self, begin, end):
         """Solve windows in which the probability is still small, the last first."""
-        settings, bounds = self.problem.settings, np.exp(self.saddles.bound)
-        growth = tuning.VERTICAL_LINES.growth if settings.relative else np.inf
+        settings, lines = self.problem.settings, tuning.VERTICAL_LINES
+        worst = lines.relative if settings.relative else np.inf
         negligible = begin
-        for here in reversed(list(_windows(begin, end, (bounds, growth)))):
-            last = here.stop - 1
-            size = 1.0 if settings.relative else bounds[last]
-            self._on_line(here, self.saddles.place[last], self.tol / size, rising=True)
+        of_rise = _lines_of_rise(self.problem, self.times, self.saddles, begin, end)
+        for here, abscissa, bound in reversed(of_rise):
+            accuracy = max(lines.rising, min(worst, lines.accuracy * self.tol / bound))
+            self._on_line(here, abscissa, accuracy, rising=True)
             # if the probability is negligible here, although its bound is not, it is so before
             if (
                 abs(self.found[0, here.start])
@@ -215,21 +240,21 @@ class _OnVerticalLines(_Inversion):
         self._store(slice(negligible), np.zeros(negligible))
 
     def _later(self, windows):
-        """Solve the window after the rise."""
+        """Solve the window after the rise, on the line that serves its last time."""
+        lines, last = tuning.VERTICAL_LINES, self.times[-1]
+        accuracy = max(lines.best, lines.accuracy * self.tol)
         for here, _ in windows:
-            self._on_line(here, 1 / self.times[here.stop - 1], self.tol, rising=False)
+            steps = np.log(last / self.times[here.stop - 1]) // np.log(lines.ratio)
+            self._on_line(here, lines.ratio**steps / last, accuracy, rising=False)
 
-    def _on_line(self, here, abscissa, tol, rising):
+    def _on_line(self, here, abscissa, accuracy, rising):
         """Fit F on a line, unless this is not wanted, and invert it."""
         if not self.wanted[here].any():
             return
         settings, saddles = tuning.VERTICAL_LINES, self.saddles
         turn = self.problem.settings.levels.index(self.level) % 2
-        best = settings.rising if rising else settings.best
-        accuracy = max(best, settings.accuracy * tol)
-        parts, fronts = self.problem.parts(
-            self.level.resolution, self.times[here], -saddles.bound[here][0]
-        )
+        first, last, rarity = self.needs[abscissa if rising else None]
+        parts, fronts = self.problem.parts(self.level.resolution, np.array([first, last]), rarity)
         values = np.zeros(here.stop - here.start)
         if self.times[here.stop - 1] > fronts.min():
             begun = saddles.begin(abscissa, settings.negligible * min(accuracy, 1.0))
@@ -242,6 +267,47 @@ class _OnVerticalLines(_Inversion):
                 offset=turn / 2,
             ).at(self.times[here])
         self._store(here, values)
+
+
+def _begin(problem, saddles):
+    """Return the first time at which the probability is not negligible."""
+    return int(np.searchsorted(saddles.bound, np.log(problem.settings.least_probability)))
+
+
+def _risen(saddles, begin):
+    """Return the first time from `begin` on at which the probability is no longer small."""
+    return max(begin, int(np.searchsorted(saddles.bound, np.log(tuning.SADDLE_POINTS.risen))))
+
+
+def _lines_of_rise(problem, times, saddles, begin, end):
+    """Windows in which the probability is still small, with their lines and bounds of it."""
+    if begin == end:
+        return []
+    abscissas, bounds = saddles.on_lines(times, tuning.VERTICAL_LINES.ratio)
+    turns = np.cumsum(np.diff(abscissas, prepend=abscissas[0]) != 0) + 1
+    one_line = np.inf if not problem.settings.relative else 1
+    windows = _windows(begin, end, (turns, one_line))
+    return [(here, abscissas[here.stop - 1], bounds[here.stop - 1]) for here in windows]
+
+
+def _needs(problems, times, saddles):
+    """First time, last time and rarity that grids serve, for each abscissa; None is the last line.
+
+    Each is that of the most demanding of the problems.
+    """
+    needs: dict = {}
+    for problem, own in zip(problems, saddles, strict=True):
+        begin = _begin(problem, own)
+        risen = _risen(own, begin)
+        lines = _lines_of_rise(problem, times, own, begin, risen)
+        windows = [(here, abscissa) for here, abscissa, _ in lines]
+        if risen < len(times):
+            windows.append((slice(risen, len(times)), None))
+        for here, abscissa in windows:
+            need = times[here][0], times[here][-1], -own.bound[here][0]
+            first, last, rarity = needs.get(abscissa, need)
+            needs[abscissa] = min(first, need[0]), max(last, need[1]), max(rarity, need[2])
+    return needs
 
 
 def _of_probability(transform):

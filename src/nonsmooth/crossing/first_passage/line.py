@@ -1,17 +1,48 @@
 """First passage of int_0^t g for the state y with white noise, by Case's elementary solutions."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
+from functools import cache, partial
 
 import numpy as np
 
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import ContourSettings, LaplaceProblem
 from nonsmooth.kinetic import tail_equation
-from nonsmooth.kinetic.case_modes import by_exit, first_passage, waves
+from nonsmooth.kinetic.case_modes import modes
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.tail_descent import Tail
 from nonsmooth.scenes.scene import Scene
+
+
+class Company:
+    """Intervals of one scene, whose transforms share grids and modes.
+
+    A grid serves the nearest walls. The modes at a place z cost much more than the transform of one
+    more interval, so that it is computed for all of them at once.
+
+    Parameters
+    ----------
+    scene : Scene
+    intervals : numpy.ndarray, shape (m, 2)
+    """
+
+    def __init__(self, scene: Scene, intervals: np.ndarray):
+        nearest = tuple(np.min(np.abs(intervals), axis=0))
+        self.problems = [LineProblem(scene, lower, upper, self) for lower, upper in intervals]
+        # by polynomial degree, shortest time, reach and depth
+        self.grid = cache(partial(ordinates, scene, distances=nearest))
+        self.parts = cache(self._parts)
+
+    def _parts(self, of_grid, z):
+        """Parts of the transform at a place for each interval."""
+        found = modes(self.grid(*of_grid), z)
+        return {
+            (problem.lower, problem.upper): found.by_exit(problem.lower, problem.upper)
+            if problem.is_split
+            else np.array([found.first_passage(problem.lower, problem.upper)])
+            for problem in self.problems
+        }
 
 
 @dataclass(frozen=True)
@@ -19,32 +50,45 @@ class LineProblem(LaplaceProblem):
     """A scene with the state y and white noise, and an interval.
 
     The resolution of a level is the polynomial degree of the grid.
+
+    Attributes
+    ----------
+    company : Company or None
+        Of the other intervals asked for; None if there are none.
     """
 
     scene: Scene
     lower: float
     upper: float
+    company: Company | None = None
 
     @property
     def settings(self) -> ContourSettings:
         """How accurate the problem is, and its levels."""
         return tuning.LINE
 
+    @property
+    def on_vertical_lines(self) -> bool:
+        """Whether F is inverted on vertical lines: always, see `LaplaceProblem`."""
+        return True
+
+    @property
+    def is_split(self) -> bool:
+        """Whether F has two parts: not if there is one wall or one is the image of the other."""
+        return self.two_sided and not (self.scene.is_odd() and self.lower == -self.upper)
+
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
         """Return F on a grid of low degree; see `LaplaceProblem`."""
-        grids, time = tuning.LINE_GRIDS, depth / radius
-        return self._on_grid(grids.coarse, time, self._reach(time, depth / 2), grids.depth + depth)
+        grids, depth = tuning.LINE_GRIDS, 2.0 ** np.ceil(np.log2(depth))
+        reach = self._reach(depth / radius, depth / 2)
+        # depths that are powers of 2 have grids in common
+        return self._on_common_grid(grids.coarse, depth / 2 / radius, reach, grids.depth + depth)
 
     def transform(
         self, resolution: int, times: np.ndarray, rarity: float
     ) -> Callable[[complex], complex]:
         """Return F on a grid for given times; see `LaplaceProblem`."""
         return self._on_grid(*self._fitting(resolution, times, rarity))
-
-    @property
-    def on_vertical_lines(self) -> bool:
-        """Whether F is inverted on vertical lines: always, see `LaplaceProblem`."""
-        return True
 
     def parts(
         self, resolution: int, times: np.ndarray, rarity: float
@@ -53,28 +97,35 @@ class LineProblem(LaplaceProblem):
 
         No path is there before g has been as large as it can be all the time.
         """
-        grid = self._grid(*self._fitting(resolution, times, rarity))
+        of_grid, company = self._fitting(resolution, times, rarity), self._company
+        grid = company.grid(*of_grid)
         fastest = np.array([np.max(grid.g), -np.min(grid.g)])
         if grid.mirrored:
             fastest = np.full(2, fastest.max())
         distances = np.array([self.upper, -self.lower])
         fronts = np.divide(distances, fastest, out=np.zeros(2), where=fastest > 0)
-        fronts[np.isinf(fronts)] = 0.0  # nothing leaves there
-        return lambda z: by_exit(grid, z, self.lower, self.upper), fronts
+        if not self.is_split:
+            fronts = fronts[np.isfinite(distances)][:1]
+        return lambda z: company.parts(of_grid, z)[self.lower, self.upper], fronts
+
+    @property
+    def _company(self):
+        alone = np.array([[self.lower, self.upper]])
+        return Company(self.scene, alone) if self.company is None else self.company
 
     def _fitting(self, resolution, times, rarity):
         """Return degree, shortest time, reach and depth of the grid for given times."""
         reach = self._reach(times[-1], rarity)
         return resolution, times[0], reach, tuning.LINE_GRIDS.depth + rarity
 
-    def _on_grid(self, degree, time, reach, depth):
-        grid = self._grid(degree, time, reach, depth)
-        return lambda z: first_passage(grid, z, self.lower, self.upper)
+    def _on_grid(self, *of_grid):
+        grid = self._company.grid(*of_grid)
+        return lambda z: modes(grid, z).first_passage(self.lower, self.upper)
 
-    def _grid(self, degree, time, reach, depth):
-        return ordinates(
-            self.scene, degree, time, reach, depth, distances=(-self.lower, self.upper)
-        )
+    def _on_common_grid(self, *of_grid):
+        """As `_on_grid`, at places that are common to the company."""
+        company = self._company
+        return lambda z: company.parts(of_grid, z)[self.lower, self.upper].sum()
 
     def _reach(self, time, depth):
         """Return a change of velocity that is unlikely to be exceeded within a time.
@@ -97,6 +148,7 @@ class LineProblemFromAfar(LineProblem):
     tail : Tail
     """
 
+    _: KW_ONLY
     tail: Tail
 
     @property
@@ -117,4 +169,6 @@ class LineProblemFromAfar(LineProblem):
             distances=(-self.lower, self.upper),
         )
         above_level = tail_equation.equation(tail, self.lower, self.upper, degree)
-        return lambda z: above_level.mean(z, *waves(grid, z, self.lower, self.upper))
+        return lambda z: above_level.mean(z, *modes(grid, z).waves(self.lower, self.upper))
+
+    _on_common_grid = _on_grid

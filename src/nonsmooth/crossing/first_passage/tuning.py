@@ -102,12 +102,17 @@ class VerticalLines:
     terms: int = 100  # chosen: largest number of terms of a fit
     rounding: float = 1e-14  # derived: relative size of singular values that are rounding
     phase: float = 1e-14  # derived: rounding of exp(-z t_0) is so many times |z| t_0
-    share: float = 0.1  # chosen: a fit is made so much better than it has to be
+    # chosen: a fit is made so much better than it has to be, or worse where that is better
+    shares: tuple[float, ...] = (0.1, 1.0, 10.0, 100.0)
     accuracy: float = 0.1  # chosen: of a fit, over the tolerance, ...
     best: float = 1e-10  # chosen: ... and the best, above rounding, ...
     rising: float = 1e-7  # chosen: ... also in the rise, where F is rounded more
     negligible: float = 0.1  # chosen: a share of F below so much of the accuracy counts as none
-    growth: float = 1e4  # chosen: largest growth of the probability's bound on a line of the rise
+    relative: float = 1e-6  # chosen: in the rise, where small probabilities keep relative accuracy
+    ratio: float = (
+        4.0  # chosen: of neighbouring lines in the rise; a bound is then at most some 100
+    )
+    #                     times Chernoff's
 
 
 @dataclass(frozen=True)
@@ -135,6 +140,7 @@ class LineGrids:
     coarse: int = 6  # chosen: polynomial degree for the choice of contours
     spare: float = 18.0  # chosen: what is neglected is exp(-18) of the probability
     depth: float = 26.0  # chosen: the grid ends where the density is exp(-26) of the probability
+    similar: float = 4.0  # chosen: walls share grids if they are at most so many times as far
 
 
 @dataclass(frozen=True)

@@ -105,15 +105,18 @@ def _sampled(scaled, abscissa, size, accuracy, offset, highest):
     """Sample until F is negligible, and then where fits to the samples so far are wrong."""
     settings = tuning.VERTICAL_LINES
     # 1 - F over z is a mean duration: F changes little closer to the axis than its inverse
-    height = settings.first * abscissa / max(1 - size, settings.least) * settings.step**offset
+    lowest = settings.first / max(1 - size, settings.least)
+    # heights are on a lattice that transforms of different thresholds share
+    place = np.floor(np.log(lowest) / np.log(settings.step)) + offset
     samples, rest = {0.0: scaled(0.0)}, settings.beyond
-    while rest and height < highest:
+    while rest and (height := abscissa * settings.step**place) < highest:
         samples[height] = scaled(height)
         rest = rest - 1 if np.all(np.abs(samples[height]) < accuracy) else settings.beyond
-        height *= settings.step
+        place += 1
     unsure, worst = list(pairwise(list(samples)[1:])), np.inf
     while unsure and len(samples) < settings.most:
-        fits = [_fit(*part, accuracy) for part in _columns(samples, abscissa)]
+        columns = _columns(samples, abscissa)
+        fits = [_fit(*part, accuracy, settings.shares[0]) for part in columns]
         wrong, errors = [], []
         for low, high in unsure:
             middle = np.sqrt(low * high)
@@ -143,13 +146,13 @@ def _mirrored(z, values):
     return np.append(z, z[above].conj()), np.append(values, values[above].conj())
 
 
-def _fit(z, values, accuracy):
+def _fit(z, values, accuracy, share):
     """Fit a rational function that is real on the real axis; None if 0 is accurate enough."""
     settings = tuning.VERTICAL_LINES
     largest = np.max(np.abs(values))
     if largest <= accuracy:
         return None
-    rtol = settings.share * accuracy / largest
+    rtol = share * accuracy / largest
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # that the samples are rounded
         return AAA(*_mirrored(z, values), rtol=rtol, max_terms=settings.terms, clean_up=False)
@@ -159,15 +162,21 @@ def _residues(z, values, accuracy):
     """Poles to the left of the line, and residues at them.
 
     The residues are fitted once more, to these poles alone: those of the rational function of a
-    high degree are not accurate far from the line.
+    high degree are not accurate far from the line. Where F is as good as rounded, a close fit has
+    poles to the right, too, without which it is worse than a less close one.
     """
-    fit = _fit(z, values, accuracy)
-    if fit is None:
-        return np.zeros(0, complex), np.zeros(0, complex)
-    poles, line = fit.poles(), z[0].real
-    poles = poles[poles.real < line]
-    z, values = _mirrored(z, values)
-    distances = line - poles.real
-    columns = distances / (z[:, None] - poles)
-    least = tuning.VERTICAL_LINES.rounding
-    return poles, distances * np.linalg.lstsq(columns, values, rcond=least)[0]
+    line, settings = z[0].real, tuning.VERTICAL_LINES
+    found, least = (np.zeros(0, complex), np.zeros(0, complex)), np.inf
+    for share in settings.shares:
+        if least <= accuracy or (fit := _fit(z, values, accuracy, share)) is None:
+            break
+        poles = fit.poles()
+        poles = poles[poles.real < line]
+        places, wanted = _mirrored(z, values)
+        distances = line - poles.real
+        columns = distances / (places[:, None] - poles)
+        strengths = np.linalg.lstsq(columns, wanted, rcond=settings.rounding)[0]
+        error = np.max(np.abs(columns @ strengths - wanted))
+        if error < least:
+            found, least = (poles, distances * strengths), error
+    return found

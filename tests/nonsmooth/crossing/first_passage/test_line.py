@@ -7,7 +7,7 @@ from scipy.interpolate import CubicSpline
 
 import nonsmooth as ns
 from nonsmooth.errors import AssumptionWarning
-from nonsmooth.kinetic.case_modes import first_passage
+from nonsmooth.kinetic.case_modes import modes
 from nonsmooth.kinetic.ordinates_line import ordinates
 from references import FRICTION, KAPPA, MIRRORED, SKEWED, W
 
@@ -77,7 +77,7 @@ class TestDeterministic:
         step = 2 * np.pi / (3 * time)
         z, terms = 8 / time + 1j * step / 2, []
         while not terms or abs(terms[-1]) > 1e-12 * abs(terms[0]):
-            terms.append(np.exp(z * time) * first_passage(grid, z, -0.6, 0.6) / z)
+            terms.append(np.exp(z * time) * modes(grid, z).first_passage(-0.6, 0.6) / z)
             z += 1j * step
         reference = step / np.pi * np.sum(terms).real
         assert abs(found.probability[1] - reference) <= found.probability_error[1] + 1e-9
@@ -162,7 +162,7 @@ class TestDeterministic:
         spline = CubicSpline(np.log(times[seen]), np.log(found[seen]))
         fine = np.geomspace(times[seen][0], times[-1], 20_001)
         transform = simpson(2 * np.exp(-2 * fine + spline(np.log(fine))), x=fine)
-        expected = first_passage(ordinates(FRICTION, 13, 0.1), 2.0, -0.6, 0.6).real
+        expected = modes(ordinates(FRICTION, 13, 0.1), 2.0).first_passage(-0.6, 0.6).real
         assert transform == pytest.approx(expected, rel=1e-5)
 
     @pytest.mark.parametrize(

@@ -64,11 +64,13 @@ class TestCrossing:
         0.69682, and the sum of its standard error and of the bias of its step is 3e-4.
         """
         answers = [
-            deterministic_crossing(COLORED_FRICTION, -2.0, 2.0, 100 * np.array(horizons), 3e-4)
+            deterministic_crossing(
+                COLORED_FRICTION, np.array([[-2.0, 2.0]]), 100 * np.array(horizons), 3e-4
+            )
             for horizons in ([2.0, 4.0], [4.0, 5.2])
         ]
         (late, late_error), (early, early_error) = (
-            (found["probability"][k], found["probability_error"][k])
+            (found["probability"][0, k], found["probability_error"][0, k])
             for found, k in zip(answers, (1, 0), strict=True)
         )
         assert abs(late - early) <= late_error + early_error
@@ -88,7 +90,7 @@ class TestCrossing:
 
         def asked(times, tol):
             work.clear()
-            deterministic_crossing(OBSTACLE, -6.0, 6.0, times, tol)
+            deterministic_crossing(OBSTACLE, np.array([[-6.0, 6.0]]), times, tol)
             return sum(work)
 
         monkeypatch.setattr(plane, "fields", counted)
