@@ -109,10 +109,8 @@ class VerticalLines:
     rising: float = 1e-7  # chosen: ... also in the rise, where F is rounded more
     negligible: float = 0.1  # chosen: a share of F below so much of the accuracy counts as none
     relative: float = 1e-6  # chosen: in the rise, where small probabilities keep relative accuracy
-    ratio: float = (
-        4.0  # chosen: of neighbouring lines in the rise; a bound is then at most some 100
-    )
-    #                     times Chernoff's
+    # chosen: of neighbouring lines in the rise; a bound is then at most some 100 times Chernoff's
+    ratio: float = 4.0
 
 
 @dataclass(frozen=True)
