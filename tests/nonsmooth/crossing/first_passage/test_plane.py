@@ -28,7 +28,7 @@ def test_starts_in_the_tails(start, message):
     """Refused, where all levels agreed that nothing crosses; without a method they are counted."""
     scene = OBSTACLE.with_n(10).with_start(start)
     with pytest.raises(ToleranceError, match=message):
-        deterministic_crossing(scene, -4.0, 4.0, np.array([8.0, 20.0]), 1e-3)
+        deterministic_crossing(scene, np.array([[-4.0, 4.0]]), np.array([8.0, 20.0]), 1e-3)
     found = ns.crossing_probability(scene, 4.0, [8.0, 20.0], seed=1)
     assert found.attrs["method"] == "monte_carlo"
 
