@@ -8,7 +8,7 @@ from scipy.special import binom
 from nonsmooth.crossing.counting import first_passage_counts
 from nonsmooth.crossing.first_passage.contours import hyperbola
 from nonsmooth.crossing.probability import crossing_probability
-from nonsmooth.kinetic.case_modes import first_passage
+from nonsmooth.kinetic.case_modes import modes
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.sampling import Sampling
@@ -92,7 +92,7 @@ def _inverted(scene, threshold, horizon, p, degree, nodes):
     level, time = threshold * np.sqrt(p), p * horizon
     grid = ordinates(scene, degree, time)
     contour = hyperbola(time, 1.01 * time, nodes, SECTOR)
-    values = [first_passage(grid, z, -level, level) / z for z in contour.nodes]
+    values = [modes(grid, z).first_passage(-level, level) / z for z in contour.nodes]
     return contour.invert(np.array(values), np.array([time]))[0]
 
 
@@ -122,7 +122,7 @@ def on_a_line(scene, threshold, horizon, p, decay=18.4, terms=15, averaged=11):
     values = []
     for degree in (10, 13):
         grid = ordinates(scene, degree, time, grading=2.5)
-        transform = np.array([first_passage(grid, z, -level, level) / z for z in nodes]).imag
+        transform = np.array([modes(grid, z).first_passage(-level, level) / z for z in nodes]).imag
         sums = -np.exp(decay / 2) / time * np.cumsum((-1.0) ** k * transform)
         values.append(binom(averaged, np.arange(averaged + 1)) @ sums[terms:] / 2.0**averaged)
     return float(values[1]), float(np.exp(-decay) + abs(values[1] - values[0]))
