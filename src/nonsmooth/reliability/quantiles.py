@@ -27,7 +27,6 @@ from nonsmooth.results import between_limits
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
 
-_OPTIONS = "step", "paths", "order", "envelope"
 SIDES = {"both": (-1.0, 1.0), "upper": (-np.inf, 1.0), "lower": (-1.0, np.inf)}
 
 
@@ -44,7 +43,6 @@ def crossing_threshold(
     seed: int | tuple = 0,
     threads: int | None = None,
     order: int | None = None,
-    envelope: str | None = None,
 ) -> xr.Dataset:
     """Find the threshold that is crossed with a given probability by p T.
 
@@ -62,7 +60,7 @@ def crossing_threshold(
         Scale, as for `crossing_probability`.
     sides : {"both", "upper", "lower"}
         The threshold b > 0 stands for the levels -b and b, for b alone, or for -b alone.
-    method, step, paths, seed, threads, order, envelope
+    method, step, paths, seed, threads, order
         As for `crossing_probability`.
     tol : float, optional
         Absolute error wanted of W, as for `crossing_probability`. Unless given, it is at most a
@@ -87,7 +85,7 @@ def crossing_threshold(
     targets, horizons = _probabilities(probability), require_increasing("horizons", horizons)
     p, shape = require_positive("p", p), np.array(SIDES[require_choice("sides", sides, SIDES)])
     seed, threads = require_seed(seed), require_threads(threads)
-    given = {"method": method, "step": step, "paths": paths, "order": order, "envelope": envelope}
+    given = {"method": method, "step": step, "paths": paths, "order": order}
     ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
 
     def reach(P, T):
@@ -137,7 +135,6 @@ def failure_time(
     seed: int | tuple = 0,
     threads: int | None = None,
     order: int | None = None,
-    envelope: str | None = None,
 ) -> xr.Dataset:
     """Find the time by which a threshold is crossed with a given probability; 1/2: the median.
 
@@ -148,7 +145,7 @@ def failure_time(
         As for `crossing_probability`.
     probability : float or array_like, shape (q,)
         P, between 0 and 1; 1/2 unless given: the median time to failure.
-    p, method, step, paths, seed, threads, order, envelope
+    p, method, step, paths, seed, threads, order
         As for `crossing_probability`.
     tol : float, optional
         Absolute error wanted of W, as for `crossing_threshold`.
@@ -168,7 +165,7 @@ def failure_time(
     require_random(scene)
     targets, pair = _probabilities(probability), np.array([bounds(threshold)])
     p, seed, threads = require_positive("p", p), require_seed(seed), require_threads(threads)
-    given = {"method": method, "step": step, "paths": paths, "order": order, "envelope": envelope}
+    given = {"method": method, "step": step, "paths": paths, "order": order}
     ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
 
     def guess(P):
@@ -208,7 +205,7 @@ class _Question:
     def __init__(self, scene: Scene, given: dict, tol: float | None):
         self._scene = scene
         self._given: dict[str, Any] = {k: v for k, v in given.items() if v is not None}
-        options = {name: given[name] for name in _OPTIONS}
+        options = {name: given[name] for name in ("step", "paths", "order")}
         self._tol = require_options(given["method"], options | {"tol": tol}).get("tol")
         self._refusal: str | None = None
         self.attributes: dict = {}
@@ -240,7 +237,7 @@ class _Question:
         given = self._given
         if "method" in given:
             return given["method"] == "monte_carlo"
-        return "order" not in given and bool({"step", "paths", "envelope"} & given.keys())
+        return "order" not in given and bool({"step", "paths"} & given.keys())
 
     def roots(
         self,
