@@ -43,6 +43,7 @@ def test_crossings_in_flight():
     assert np.allclose(mirrored.probability, found.probability, rtol=0, atol=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "horizon", "exact"),
     # on elements of degree 14, where degree 11 has the same nine digits

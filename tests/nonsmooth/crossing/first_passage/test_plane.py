@@ -40,9 +40,9 @@ class TestCrossing:
     @pytest.mark.parametrize(
         ("name", "paths", "p"),
         [
-            ("friction", 4000, 3),
-            ("plastic", 2000, 3),
-            ("obstacle", 20000, 3),
+            ("friction", 4000, 1),
+            ("plastic", 2000, 1),
+            ("obstacle", 20000, 1),
             ("obstacle", 2000, 300),  # so long that it is not marched
         ],
     )
