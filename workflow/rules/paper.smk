@@ -6,16 +6,8 @@ FIGURES = [
 ]
 TABLES = [
     *["table_1", "table_2", "table_3", "table_4", "table_5", "table_6", "table_7"],
-    *[
-        "table_7b",
-        "table_9",
-        "table_10",
-        "table_11",
-        "table_12",
-        "table_errata",
-        "table_potentials",
-    ],
-    "table_time_step",
+    *["table_7b", "table_9", "table_10", "table_11", "table_12"],
+    *["table_errata", "table_potentials", "table_time_step"],
 ]
 
 
