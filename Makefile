@@ -70,10 +70,11 @@ diagrams: env ## measure speed against error anew, and refresh the copies in doc
 	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_gamma2 measure_pathwise measure_cost -- speed_against_error
 	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
 
-# uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute
+# uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute.
+# Bytecode is made here: a hundred jobs import the same packages, and may not be allowed to keep it
 define environment
 $(PYTHON) -m venv $(1)
-$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
+$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --compile-bytecode --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
 endef
 
 env: $(VENV)/installed ## the environment alone, in .venv
@@ -82,6 +83,7 @@ $(VENV)/installed: environment-lock.txt pyproject.toml
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'nonsmooth needs Python >= 3.11; set PYTHON=python3.11 or newer')"
 	$(call environment,$(VENV),-r environment-lock.txt)
 	$(BIN)/python -m pip install --disable-pip-version-check --quiet --no-deps --no-build-isolation --editable .
+	$(BIN)/python -m compileall -q src
 	$(BIN)/python -m nonsmooth
 	touch $@
 

@@ -94,7 +94,7 @@ def copy_repository(destination, *extra):
     for name in (*TRACKED, *extra):
         source = ROOT / name if name in TRACKED else Path(name)
         if source.is_dir():
-            skip = shutil.ignore_patterns("__pycache__", "*.pdf", "*.egg-info")
+            skip = shutil.ignore_patterns("kernels-*", "*.pdf", "*.egg-info")
             shutil.copytree(source, destination / name, ignore=skip)
         else:
             (destination / name).parent.mkdir(exist_ok=True)
