@@ -8,13 +8,7 @@ from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.adding_doubling import fields
-from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
-
-SCENES = {
-    "friction": (COLORED_FRICTION, 0.3),
-    "plastic": (PLASTIC_STRAIN, 0.3),
-    "obstacle": (OBSTACLE, 0.8),
-}
+from references import COLORED_FRICTION, OBSTACLE
 
 
 @pytest.mark.parametrize(
@@ -37,22 +31,11 @@ def test_starts_in_the_tails(start, message):
 class TestCrossing:
     """The inverted transform against what does not use it."""
 
-    @pytest.mark.parametrize(
-        ("name", "paths", "p"),
-        [
-            ("friction", 4000, 1),
-            ("plastic", 2000, 1),
-            ("obstacle", 20000, 1),
-            ("obstacle", 2000, 300),  # so long that it is not marched
-        ],
-    )
-    def test_agrees_with_monte_carlo(self, name, paths, p):
-        """Both agree within 4.5 standard errors and the step's bias; false alarms 3e-5 in all."""
-        scene, level = SCENES[name]
-        horizons = [2.0]
-        found = ns.crossing_probability(scene, level, horizons, p, method="deterministic", tol=2e-3)
+    def test_agrees_with_monte_carlo(self):
+        """At late times, within 4.5 standard errors and the step's bias; false alarm 7e-6."""
+        found = ns.crossing_probability(OBSTACLE, 0.8, [2.0], 300, method="deterministic", tol=2e-3)
         assert np.all(found.probability_error < 2e-3)
-        sample = ns.crossing_probability(scene, level, horizons, p, step=0.02, paths=paths, seed=7)
+        sample = ns.crossing_probability(OBSTACLE, 0.8, [2.0], 300, step=0.02, paths=2000, seed=7)
         allowed = 4.5 * sample.standard_error + np.abs(sample.step_bias)
         allowed += 4.5 * sample.step_bias_error + found.probability_error
         assert np.all(np.abs(found.probability - sample.probability) < allowed)

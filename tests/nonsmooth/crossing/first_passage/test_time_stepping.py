@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+import nonsmooth as ns
 from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted
 from nonsmooth.crossing.first_passage.time_stepping import stepped
-from references import COLORED_FRICTION, OBSTACLE
+from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 
 TOLERANCE = 5e-3  # what coarse grids reach, and worth comparing
 
@@ -25,6 +26,22 @@ def test_marching_agrees_with_the_transform():
     ) + sum(np.abs(invert(at) - transformed) for at in [(1, 0, 1, 1), (0, 1, 1, 1), (0, 0, 0, 1)])
     assert np.all(np.abs(marched - transformed) <= 2 * allowed + 1e-5)
     assert np.max(allowed) < TOLERANCE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scene", "level", "paths"),
+    [(COLORED_FRICTION, 0.3, 4000), (PLASTIC_STRAIN, 0.3, 2000), (OBSTACLE, 0.8, 20000)],
+)
+def test_marching_agrees_with_monte_carlo(scene, level, paths):
+    """On coarse grids, within 4.5 standard errors and the step's bias; false alarms 2e-5 in all."""
+    p, horizon = 3, 2.0
+    threshold, times = level * np.sqrt(p), np.array([p * horizon])
+    found = stepped(PlaneProblem(scene, -threshold, threshold, times), times)((0, 0, 0, 0))[0]
+    sample = ns.crossing_probability(scene, level, [horizon], p, step=0.02, paths=paths, seed=7)
+    allowed = 4.5 * sample.standard_error + np.abs(sample.step_bias)
+    allowed += 4.5 * sample.step_bias_error + TOLERANCE
+    assert np.all(np.abs(found - sample.probability) < allowed)
 
 
 def test_crossings_too_rare_are_none():
