@@ -102,12 +102,14 @@ def test_loose_averages_are_within_their_errors_in_every_bin(n, damping, sigma, 
     assert np.max(loose_error) <= 0.1 * np.max(loose) * (1 + 1e-3)
 
 
-@pytest.mark.parametrize("tol", [1e6, 1.0, 0.5, 0.3, 0.1])
-def test_loose_tolerances_are_within_their_errors(tol):
+@pytest.mark.slow
+def test_loose_tolerances_are_within_their_errors():
     """Also at the wall, where the density of a yielding displacement is largest."""
     points = {"y": [0.0, 1.0], "x": [-1.0, 0.0, 1.0]}
     scene = ns.Scene("elasto_plastic", potential="x**2/2")
-    loose, fine = (ns.invariant_density(scene, tol=t, points=points) for t in (tol, 1e-3))
-    for name in ("density_y", "density_x", "density_y_x"):
-        allowed = loose[f"{name}_error"] + fine[f"{name}_error"]
-        assert bool((abs(loose[name] - fine[name]) <= allowed).all())
+    fine = ns.invariant_density(scene, tol=1e-3, points=points)
+    for tol in (1e6, 1.0, 0.5, 0.3, 0.1):
+        loose = ns.invariant_density(scene, tol=tol, points=points)
+        for name in ("density_y", "density_x", "density_y_x"):
+            allowed = loose[f"{name}_error"] + fine[f"{name}_error"]
+            assert bool((abs(loose[name] - fine[name]) <= allowed).all())
