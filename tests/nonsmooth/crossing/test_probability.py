@@ -53,7 +53,7 @@ def test_the_distance_of_the_limit_to_a_finite_p_is_bounded(seed):
     for p in 10.0 ** np.arange(-1, 5):
         limit = ns.crossing_probability(scene, threshold, [0.5, 2.0], p, method="asymptotic")
         exact = ns.crossing_probability(
-            scene, threshold, [0.5, 2.0], p, method="deterministic", tol=1e-4
+            scene, threshold, [0.5, 2.0], p, method="deterministic", tol=1e-5
         )
         distance = np.abs(limit["probability"] - exact["probability"])
         assert np.all(distance <= limit["probability_error"] + exact["probability_error"])

@@ -269,6 +269,7 @@ class _Refinement:
         solution = np.clip(found, 0.0, 1.0)
         # values are compared before they are clipped: two levels that failed may agree afterwards
         change = refinement.safety * np.abs(found - coarse) + np.abs(found - solution)
+        change += refinement.by_chance * self.tol * solution
         self._change = np.where(solved, change, self._change)
         return _with_floors(self.problem, self.times, solution, self._change)
 

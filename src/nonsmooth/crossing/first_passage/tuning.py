@@ -125,6 +125,9 @@ class Refinement:
     # fitted: benchmarks/crossing_honesty.py; factor on the difference of two levels, above 1 where
     # levels converge irregularly
     safety: float = 3.0
+    # chosen: two levels that were asked for tol may agree better than either is right; the error is
+    # at least so much of tol
+    by_chance: float = 1e-3
     nearby: float = 2.0  # chosen: times within this factor share their errors
     underflow: float = 1e-300  # derived: about the smallest normal number
     exact: float = 1e-12  # chosen: smaller errors are kept, not replaced by the complement's error
