@@ -39,6 +39,8 @@ def crossing_exponents(crossing, scenes, thresholds, names):
             "probability_at_n_last_error": float(last["probability_error"]),
             "limit": limit,
             "limit_error": error,
+            "distance": distance,
+            "distance_error": float(last["probability_error"]) + error,
             "exponent": float(run["exponent"]),
             "exponent_error": float(run["exponent_error"]),
         }
