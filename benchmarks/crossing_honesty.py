@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage.line import LineProblem
+from nonsmooth.crossing.first_passage.line import Intervals
 from nonsmooth.errors import ToleranceError
 from nonsmooth.line import eigenfunctions
 
@@ -61,7 +61,8 @@ def on_vertical_line(scene, levels, time):
     # The tiny constant makes g not odd, so that the symmetry is not used. Else decay lengths would
     # be square roots of eigenvalues, which have fewer digits.
     whole = replace(scene, observable=f"{scene.observable} + 1e-30")
-    transform = LineProblem(whole, *levels).transform(DEGREE, np.array([time]), 12.0)
+    (problem,) = Intervals(whole, [levels]).problems
+    transform = problem.transform(DEGREE, np.array([time]), 12.0)
     step = 2 * np.pi / (PERIOD * time)
     z = DECAY / (PERIOD * time) + 1j * step * (np.arange(MOST) + 0.5)
     values = []

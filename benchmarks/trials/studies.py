@@ -212,7 +212,6 @@ def main() -> None:
     tally = Tally()
     # a sweep without its scenes and a scene more may be right
     chosen = [m for m in mutations() if not (m.kind == "sweep" and m.key)][:: every or 1]
-    many = len(chosen)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if every:
@@ -238,8 +237,7 @@ def main() -> None:
         for kind, output in [] if every else tables(folder):
             fine = len(output.splitlines()) == 1 and "studies/table" in output
             tally.add(f"CSV, {kind}", output, [] if fine else ["does not tell file and cure"])
-            many += 1
-    print(f"{'mutations':30}{many}")
+    print(f"{'mutations':30}{tally.total}")
     tally.end()
 
 

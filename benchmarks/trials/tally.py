@@ -32,6 +32,11 @@ class Tally:
             self.bad += 1
             print(f"{', '.join(faults)}: {where}: {output[-300:]}", flush=True)
 
+    @property
+    def total(self) -> int:
+        """Number of answers."""
+        return self.counts["refused"] + self.counts["accepted"]
+
     def end(self) -> None:
         """Print the counts; exit with status 1 if anything is bad."""
         for what, count in self.counts.most_common():

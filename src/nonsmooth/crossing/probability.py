@@ -302,7 +302,7 @@ def _asymptotic(scene, thresholds, horizons, p, seed, threads):
                 error = np.minimum(np.abs(value - nearer) + rest + own, error)
         return {"probability": value, "probability_error": error, "limit_error": own}
 
-    return _without_attributes(lambda: one_by_one(partial(one, tuple(t)) for t in thresholds))
+    return _each(one, thresholds)
 
 
 def _require_centred(scene, gamma2, found):
@@ -357,7 +357,12 @@ def _corrected(scene, thresholds, horizons, p, seed, threads, order=1, tol=None)
             lambda found: {"probability": found[0], "probability_error": found[1]},
         )
 
-    return _without_attributes(lambda: one_by_one(partial(one, tuple(t)) for t in thresholds))
+    return _each(one, thresholds)
+
+
+def _each(solve, thresholds):
+    """Solve for one threshold after the other."""
+    return _without_attributes(lambda: one_by_one(partial(solve, tuple(t)) for t in thresholds))
 
 
 def _without_attributes(solve):

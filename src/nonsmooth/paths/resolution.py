@@ -18,7 +18,7 @@ from nonsmooth.scenes.scene import Scene
 
 def coarse_step(scene: Scene, scheme: str = "strang") -> float:
     """Step of the first pilot, from which a step with a small enough bias is found."""
-    longest = registry.longest_step(registry.scheme(scene, scheme), scene)
+    longest = registry.longest_step(scene, scheme)
     chosen = tuning.MONTE_CARLO
     return min(chosen.coarse_step * min(1.0, 1 / scene.damping), chosen.stable_share * longest)
 

@@ -13,7 +13,7 @@ import numpy as np
 from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage import tuning as passage_tuning
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
-from nonsmooth.crossing.first_passage.line import LineProblem
+from nonsmooth.crossing.first_passage.line import Intervals
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.line.potential import depth
@@ -81,7 +81,7 @@ def transformed_mean(scene: Scene, lower: float, upper: float, tol: float) -> tu
 
 
 def _on_line(scene, lower, upper, tol):
-    problem = LineProblem(scene, lower, upper)
+    (problem,) = Intervals(scene, [(lower, upper)]).problems
     mean = _rough(lambda z: problem.coarse_transform(z, 1.0), 1 / scene.damping)
     times = np.array([min(mean, 1 / scene.damping), mean]) * tuning.TRANSFORMED_MEAN.times
 

@@ -471,6 +471,15 @@ def _meant(value):
     return "nonsmooth.Scene('friction'), for example"
 
 
+def require_velocity(scene: Scene, cure: str) -> None:
+    """Refuse, for a solver, a scene whose g is a function of the noise alone."""
+    if "y" not in scene.state:
+        raise SceneError(
+            f"g = {quoted(scene.observable)} is a function of the noise alone, which the solvers "
+            f"do not take without the velocity; {cure}"
+        )
+
+
 def require_random(scene: object) -> None:
     """Refuse what is no scene, and a scene whose g is constant, so that it has no state."""
     require_scene(scene)

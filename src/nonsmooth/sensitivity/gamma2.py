@@ -3,9 +3,9 @@
 import time
 
 from nonsmooth.checks import require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
+from nonsmooth.errors import ToleranceError, answered
 from nonsmooth.estimate import Estimate
-from nonsmooth.scenes.scene import Scene, require_scene
+from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
 from nonsmooth.sensitivity import grids, line, tuning
 from nonsmooth.sensitivity.parameters import require_parameter_of, value_of
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
@@ -55,11 +55,7 @@ def asymptotic_variance_sensitivity(
     wanted = None if tol is None else require_tolerance(tol)
     if not scene.state or scene.primitive_variable is not None:
         return Estimate(0.0, 0.0, "gamma^2 = 0", time.perf_counter() - began)
-    if "y" not in scene.state:
-        raise SceneError(
-            f"g = {quoted(scene.observable)} is a function of the noise alone, which the solvers "
-            "do not take without the velocity; choose a g with y or x"
-        )
+    require_velocity(scene, "choose a g with y or x")
     accuracy = tuning.GAMMA2.tolerance[scene.dimension - 1] if wanted is None else wanted
 
     def present(found):

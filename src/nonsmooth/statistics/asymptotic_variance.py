@@ -9,13 +9,13 @@ from collections.abc import Callable
 from functools import partial
 
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import SceneError, answered, first_answer, quoted
+from nonsmooth.errors import answered, first_answer
 from nonsmooth.estimate import Estimate, not_negative
 from nonsmooth.line import quadrature
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes import symbols
-from nonsmooth.scenes.scene import Scene, require_scene
+from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
 from nonsmooth.statistics import gamma2_on_grids, tuning
 from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2
 
@@ -107,11 +107,7 @@ def _sampled(scene, tol, seed, threads):
 
 
 def _deterministic(scene, tol, _seed, _threads):
-    if "y" not in scene.state:
-        raise SceneError(
-            f"g = {quoted(scene.observable)} is a function of the noise alone, which the solvers "
-            "do not take without the velocity; use method='monte_carlo'"
-        )
+    require_velocity(scene, "use method='monte_carlo'")
     tol = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
     if not scene.is_line:
         return answered(

@@ -13,13 +13,13 @@ from functools import partial
 import numpy as np
 
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer, quoted
+from nonsmooth.errors import ToleranceError, answered, first_answer
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, solver
 from nonsmooth.line import quadrature
-from nonsmooth.scenes.scene import Scene, require_scene
+from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
 from nonsmooth.statistics import tuning
 from nonsmooth.statistics.combined_grids import combined
 from nonsmooth.statistics.sampled_gamma2 import sampled_mean
@@ -117,11 +117,7 @@ def exact_mean(scene: Scene) -> Estimate | None:
 
 
 def _deterministic(scene, tol, _seed, _threads):
-    if "y" not in scene.state:
-        raise SceneError(
-            f"g = {quoted(scene.observable)} is a function of the noise alone, which the solvers "
-            "do not take without the velocity; use method='monte_carlo'"
-        )
+    require_velocity(scene, "use method='monte_carlo'")
     return answered(lambda: mean_on_grids(scene, tol), lambda found: (*found, "spectral elements"))
 
 

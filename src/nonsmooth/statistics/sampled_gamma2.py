@@ -252,7 +252,7 @@ def _mean_bias(scene, times, sampling, order):
 def _short_step(scene):
     """First step for a stationary mean."""
     short = tuning.SAMPLED_GAMMA2.step_of_mean * min(1.0, 1 / scene.damping)
-    return min(short, registry.scheme(scene).longest_step(scene) / 2)
+    return min(short, registry.longest_step(scene) / 2)
 
 
 def _first_times(scene):

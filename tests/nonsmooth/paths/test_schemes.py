@@ -265,6 +265,7 @@ def test_a_potential_with_a_pole():
         lambda: coefficients(scene, "strang", 0.1),
         lambda: ns.crossing_probability(scene, 1.0, [1.0], method="importance_sampling"),
         lambda: ns.asymptotic_variance(scene, method="monte_carlo"),
+        lambda: ns.mean(scene, method="monte_carlo"),
     ):
         with pytest.raises(SceneError, match="no time step resolves the potential '1/x'"):
             ask()

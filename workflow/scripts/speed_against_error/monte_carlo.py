@@ -65,7 +65,7 @@ def monte_carlo(horizon, n, steps, paths, peer_steps, peer_paths, rounds, python
             exact = variance(scene, [horizon])
             references[panel] = tuple(float(exact[name][0]) / horizon for name in ("v", "v_error"))
             for (name, (scheme, control)), step, count in product(methods.items(), steps, paths):
-                if not step < registry.scheme(scene, scheme).longest_step(scene):
+                if not step < registry.longest_step(scene, scheme):
                     continue
                 run = timed(sampled, scene, horizon, step, count, scheme, control)
                 cases.append(Case(panel, name, step, run))

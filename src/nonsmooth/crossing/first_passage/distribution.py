@@ -12,7 +12,7 @@ from nonsmooth.crossing.curves import one_by_one
 from nonsmooth.crossing.first_passage import plane, tuning
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver, contour_solvers
-from nonsmooth.crossing.first_passage.line import Company, LineProblemFromAfar
+from nonsmooth.crossing.first_passage.line import Intervals, LineProblemFromAfar
 from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted
 from nonsmooth.crossing.first_passage.problem import (
     DirectProblem,
@@ -93,7 +93,7 @@ def _on_line(scene, intervals, times, tol):
         return [partial(_from_afar, scene, *interval, times, tol) for interval in intervals]
     solvers = {}
     for group in _of_similar_size(intervals):
-        problems = Company(scene, intervals[group]).problems
+        problems = Intervals(scene, intervals[group]).problems
         together = contour_solvers(problems, times, tol)
         for k, problem, solver in zip(group, problems, together, strict=True):
             solvers[k] = partial(refined, problem, times, tol, solver)
@@ -173,7 +173,7 @@ def _from_afar(scene, lower, upper, times, tol):
 
     if not late.any() or 1 - tail.law(tail.flight).passed(distance) <= neglected:
         return whole(None)
-    problem = LineProblemFromAfar(scene, lower, upper, tail=tail)
+    problem = LineProblemFromAfar(scene, lower, upper, tail)
     # half of the tolerance is kept for what is neglected
     return answered(lambda: refined(problem, times[late] - tail.descent, tol / (2 * left)), whole)
 

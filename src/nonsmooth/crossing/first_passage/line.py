@@ -1,7 +1,8 @@
 """First passage of int_0^t g for the state y with white noise, by Case's elementary solutions."""
 
-from collections.abc import Callable
-from dataclasses import KW_ONLY, dataclass, replace
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
@@ -15,7 +16,7 @@ from nonsmooth.kinetic.tail_descent import Tail
 from nonsmooth.scenes.scene import Scene
 
 
-class Company:
+class Intervals:
     """Intervals of one scene, whose transforms share grids and modes.
 
     A grid serves the nearest walls. The modes at a place z cost much more than the transform of one
@@ -24,12 +25,17 @@ class Company:
     Parameters
     ----------
     scene : Scene
-    intervals : numpy.ndarray, shape (m, 2)
+    ends : sequence, shape (m, 2)
+
+    Attributes
+    ----------
+    problems : list of LineProblem
+        One for each interval.
     """
 
-    def __init__(self, scene: Scene, intervals: np.ndarray):
-        nearest = tuple(np.min(np.abs(intervals), axis=0))
-        self.problems = [LineProblem(scene, lower, upper, self) for lower, upper in intervals]
+    def __init__(self, scene: Scene, ends: Sequence[tuple[float, float]] | np.ndarray):
+        nearest = tuple(np.min(np.abs(ends), axis=0))
+        self.problems = [LineProblem(scene, lower, upper, self) for lower, upper in ends]
         # by polynomial degree, shortest time, reach and depth
         self.grid = cache(partial(ordinates, scene, distances=nearest))
         self.parts = cache(self._parts)
@@ -46,43 +52,27 @@ class Company:
 
 
 @dataclass(frozen=True)
-class LineProblem(LaplaceProblem):
+class _OfLine(LaplaceProblem):
     """A scene with the state y and white noise, and an interval.
 
     The resolution of a level is the polynomial degree of the grid.
-
-    Attributes
-    ----------
-    company : Company or None
-        Of the other intervals asked for; None if there are none.
     """
 
     scene: Scene
     lower: float
     upper: float
-    company: Company | None = None
-
-    @property
-    def settings(self) -> ContourSettings:
-        """How accurate the problem is, and its levels."""
-        return tuning.LINE
 
     @property
     def on_vertical_lines(self) -> bool:
         """Whether F is inverted on vertical lines: always, see `LaplaceProblem`."""
         return True
 
-    @property
-    def is_split(self) -> bool:
-        """Whether F has two parts: not if there is one wall or one is the image of the other."""
-        return self.two_sided and not (self.scene.is_odd() and self.lower == -self.upper)
-
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
         """Return F on a grid of low degree; see `LaplaceProblem`."""
         grids, depth = tuning.LINE_GRIDS, 2.0 ** np.ceil(np.log2(depth))
         reach = self._reach(depth / radius, depth / 2)
         # depths that are powers of 2 have grids in common
-        return self._on_common_grid(grids.coarse, depth / 2 / radius, reach, grids.depth + depth)
+        return self._on_coarse_grid(grids.coarse, depth / 2 / radius, reach, grids.depth + depth)
 
     def transform(
         self, resolution: int, times: np.ndarray, rarity: float
@@ -90,42 +80,18 @@ class LineProblem(LaplaceProblem):
         """Return F on a grid for given times; see `LaplaceProblem`."""
         return self._on_grid(*self._fitting(resolution, times, rarity))
 
-    def parts(
-        self, resolution: int, times: np.ndarray, rarity: float
-    ) -> tuple[Callable[[complex], np.ndarray], np.ndarray]:
-        """Parts of F by the wall through which paths leave; see `LaplaceProblem`.
-
-        No path is there before g has been as large as it can be all the time.
-        """
-        of_grid, company = self._fitting(resolution, times, rarity), self._company
-        grid = company.grid(*of_grid)
-        fastest = np.array([np.max(grid.g), -np.min(grid.g)])
-        if grid.mirrored:
-            fastest = np.full(2, fastest.max())
-        distances = np.array([self.upper, -self.lower])
-        fronts = np.divide(distances, fastest, out=np.zeros(2), where=fastest > 0)
-        if not self.is_split:
-            fronts = fronts[np.isfinite(distances)][:1]
-        return lambda z: company.parts(of_grid, z)[self.lower, self.upper], fronts
-
-    @property
-    def _company(self):
-        alone = np.array([[self.lower, self.upper]])
-        return Company(self.scene, alone) if self.company is None else self.company
-
     def _fitting(self, resolution, times, rarity):
         """Return degree, shortest time, reach and depth of the grid for given times."""
         reach = self._reach(times[-1], rarity)
         return resolution, times[0], reach, tuning.LINE_GRIDS.depth + rarity
 
-    def _on_grid(self, *of_grid):
-        grid = self._company.grid(*of_grid)
-        return lambda z: modes(grid, z).first_passage(self.lower, self.upper)
+    @abstractmethod
+    def _on_grid(self, degree, time, reach, depth):
+        """Return F on a grid."""
 
-    def _on_common_grid(self, *of_grid):
-        """As `_on_grid`, at places that are common to the company."""
-        company = self._company
-        return lambda z: company.parts(of_grid, z)[self.lower, self.upper].sum()
+    def _on_coarse_grid(self, *of_grid):
+        """As `_on_grid`, at places that other intervals ask for, too."""
+        return self._on_grid(*of_grid)
 
     def _reach(self, time, depth):
         """Return a change of velocity that is unlikely to be exceeded within a time.
@@ -138,7 +104,55 @@ class LineProblem(LaplaceProblem):
 
 
 @dataclass(frozen=True)
-class LineProblemFromAfar(LineProblem):
+class LineProblem(_OfLine):
+    """First passage from a start that is not far in the tails.
+
+    Attributes
+    ----------
+    intervals : Intervals
+        All that are asked for, this one among them.
+    """
+
+    intervals: Intervals
+
+    @property
+    def settings(self) -> ContourSettings:
+        """How accurate the problem is, and its levels."""
+        return tuning.LINE
+
+    @property
+    def is_split(self) -> bool:
+        """Whether F has two parts: not if there is one wall or one is the image of the other."""
+        return self.two_sided and not (self.scene.is_odd() and self.lower == -self.upper)
+
+    def parts(
+        self, resolution: int, times: np.ndarray, rarity: float
+    ) -> tuple[Callable[[complex], np.ndarray], np.ndarray]:
+        """Parts of F by the wall through which paths leave; see `LaplaceProblem`.
+
+        No path is there before g has been as large as it can be all the time.
+        """
+        of_grid = self._fitting(resolution, times, rarity)
+        grid = self.intervals.grid(*of_grid)
+        fastest = np.array([np.max(grid.g), -np.min(grid.g)])
+        if grid.mirrored:
+            fastest = np.full(2, fastest.max())
+        distances = np.array([self.upper, -self.lower])
+        fronts = np.divide(distances, fastest, out=np.zeros(2), where=fastest > 0)
+        if not self.is_split:
+            fronts = fronts[np.isfinite(distances)][:1]
+        return lambda z: self.intervals.parts(of_grid, z)[self.lower, self.upper], fronts
+
+    def _on_grid(self, *of_grid):
+        grid = self.intervals.grid(*of_grid)
+        return lambda z: modes(grid, z).first_passage(self.lower, self.upper)
+
+    def _on_coarse_grid(self, *of_grid):
+        return lambda z: self.intervals.parts(of_grid, z)[self.lower, self.upper].sum()
+
+
+@dataclass(frozen=True)
+class LineProblemFromAfar(_OfLine):
     """The rest of a path from a start far in the tails, after its first descent.
 
     Times count from the end of the descent, at which velocity and int g are normal.
@@ -148,15 +162,12 @@ class LineProblemFromAfar(LineProblem):
     tail : Tail
     """
 
-    _: KW_ONLY
     tail: Tail
 
     @property
     def settings(self) -> ContourSettings:
         """How accurate the problem is, and its levels."""
         return tuning.LINE_FROM_AFAR
-
-    parts = LaplaceProblem.parts
 
     def _on_grid(self, degree, time, reach, depth):
         tail = self.tail
@@ -170,5 +181,3 @@ class LineProblemFromAfar(LineProblem):
         )
         above_level = tail_equation.equation(tail, self.lower, self.upper, degree)
         return lambda z: above_level.mean(z, *modes(grid, z).waves(self.lower, self.upper))
-
-    _on_common_grid = _on_grid

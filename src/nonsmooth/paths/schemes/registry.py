@@ -74,7 +74,7 @@ def coefficients(
         If the scheme cannot simulate the scene, or not with such a step.
     """
     chosen = scheme(scene, name)
-    if not step < (longest := longest_step(chosen, scene)):
+    if not step < (longest := longest_step(scene, name)):
         raise SceneError(
             f"the scheme {chosen.name!r} is unstable with step = {step:g}; "
             f"choose one below {longest:.2g}"
@@ -91,22 +91,27 @@ def coefficients(
     )
 
 
-@lru_cache(maxsize=256)
-def longest_step(chosen: Scheme, scene: Scene) -> float:
+def longest_step(scene: Scene, name: str = "strang") -> float:
     """Return the step below which a scheme is stable.
 
     Raises
     ------
     SceneError
-        If there is none, because a force is infinite somewhere.
+        If the scheme cannot simulate the scene, or there is no such step, because a force is
+        infinite somewhere.
     """
-    longest = chosen.longest_step(scene)
+    longest = _longest_step(scheme(scene, name), scene)
     if longest == 0:
         raise SceneError(
             f"no time step resolves the potential {quoted(scene.potential)} or that of the noise, "
             "which bends infinitely somewhere; choose one without poles"
         )
     return longest
+
+
+@lru_cache(maxsize=256)
+def _longest_step(chosen, scene):
+    return chosen.longest_step(scene)
 
 
 def on_given_increments(s: Any) -> Any:
