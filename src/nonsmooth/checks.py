@@ -11,7 +11,7 @@ of one.
 
 import difflib
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from numbers import Real
 from typing import Any, NoReturn
@@ -30,6 +30,7 @@ SMALLEST, LARGEST = 1e-30, 1e30
 PARAMETERS = 1e-9, 1e9
 # the limits n -> 0 and n -> inf, up to rounding
 PENALIZATIONS = 1e-15, 1e15
+NO_OTHERS: Mapping[str, str] = {}
 
 
 def _refuse(name: str, value: object, cure: str) -> NoReturn:
@@ -111,13 +112,15 @@ def require_seed(value: Any) -> int | tuple:
     return (int(entropy), *labels) if labels else int(entropy)
 
 
-def require_choice(name: str, value: Any, choices: Iterable[str]) -> str:
-    """Return one of some names; the message has the nearest one."""
+def require_choice(
+    name: str, value: Any, choices: Iterable[str], meant: Mapping[str, str] = NO_OTHERS
+) -> str:
+    """Return one of some names; the message has the one that is `meant` by another, or near."""
     known = list(choices)
     if not isinstance(value, str) or value not in known:
-        near = (
-            difflib.get_close_matches(value.lower(), known, n=1) if isinstance(value, str) else []
-        )
+        word = value.lower() if isinstance(value, str) else ""
+        near = [meant[word]] if meant.get(word) in known else []
+        near += difflib.get_close_matches(word, known, n=1)
         _refuse(
             name, value, f"did you mean {near[0]!r}?" if near else f"choose from {', '.join(known)}"
         )

@@ -77,3 +77,5 @@ def test_choices():
     ):
         with pytest.raises(SceneError, match=cure):
             checks.require_choice("a", wrong, ("lie", "strang"))
+    with pytest.raises(SceneError, match="did you mean 'lie'"):
+        checks.require_choice("a", "Trotter", ("lie", "strang"), {"trotter": "lie"})

@@ -5,6 +5,7 @@ import inspect
 import pytest
 
 import nonsmooth as ns
+from references import FRICTION
 
 FUNCTIONS = [name for name in ns.__all__ if inspect.isfunction(getattr(ns, name))]
 
@@ -54,6 +55,24 @@ def test_what_is_no_scene_is_told_how_to_make_one(name, given, written):
     with pytest.raises(ns.NonsmoothError) as told:
         function(given, **needed)
     assert str(told.value).endswith(written)
+
+
+@pytest.mark.parametrize(
+    ("ask", "written"),
+    [
+        (lambda: ns.state_crossing_probability(FRICTION, "velocity", 1, 1), "mean 'y'?"),
+        (lambda: ns.crossing_sensitivity(FRICTION, 0.6, 1, "b"), "mean 'threshold'?"),
+        (lambda: ns.asymptotic_variance_sensitivity(FRICTION, "C_b"), "mean 'damping'?"),
+        (lambda: ns.Scene("elasto_plastic", observable="plastic_strain"), "'plastic_strain_rate'?"),
+        (lambda: ns.hazard_rate(FRICTION, [0.5, 0.6], 1), "give one number b > 0"),
+        (lambda: ns.crossing_probability(FRICTION, 0.6, 1, envelope=2), "write it in quotes"),
+    ],
+)
+def test_frequent_mistakes_are_told_what_to_write(ask, written):
+    """Names from elsewhere, and one thing where another is wanted."""
+    with pytest.raises(ns.NonsmoothError) as told:
+        ask()
+    assert written in str(told.value)
 
 
 def test_the_docstring_names_everything_public():

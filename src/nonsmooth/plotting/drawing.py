@@ -31,8 +31,8 @@ def plot(result: Any) -> dict[str, Any]:
     dict
         From the names of the variables to the panels, which are matplotlib Axes. There is a panel
         for each variable: curves over one dimension with the band of their errors, or between
-        `lower` and `upper`; paths; maps over two dimensions, of several results by contours. The
-        estimates share the panel ``"value"``.
+        `lower` and `upper`; numbers with their error bars, that of estimates in the panel
+        ``"value"``; paths; maps over two dimensions, of several results by contours.
 
     Raises
     ------
@@ -51,10 +51,6 @@ def plot(result: Any) -> dict[str, Any]:
     several = isinstance(result, Mapping) and not isinstance(result, xr.Dataset)
     results = dict(result) if several else {"": result}
     with mpl.rc_context(STYLE):
-        if results and all(isinstance(one, Estimate) for one in results.values()):
-            _, panel = plt.subplots(figsize=(0.6 * TEXT_WIDTH, PANEL_HEIGHT))
-            _draw_estimates(panel, results)
-            return {"value": panel}
         found = {label: _dataset(one) for label, one in results.items()}
         names = [name for data in found.values() for name in main_variables(data)]
         names = list(dict.fromkeys(names))
@@ -62,9 +58,12 @@ def plot(result: Any) -> dict[str, Any]:
             raise _no_result(result)
         panels = _panels(plt, names)
         for name, panel in panels.items():
-            for k, (label, data) in enumerate(found.items()):
-                if name in data:
-                    _draw(panel, data, name, k, str(label), len(found) > 1)
+            having = {label: data for label, data in found.items() if name in data}
+            if all(data[name].size == 1 for data in having.values()):
+                _draw_numbers(panel, having, name)
+                continue
+            for k, (label, data) in enumerate(having.items()):
+                _draw(panel, data, name, k, str(label), len(having) > 1)
             if panel.get_legend_handles_labels()[1]:
                 panel.legend()
     return panels
@@ -78,6 +77,8 @@ def _no_result(value):
 
 
 def _dataset(result):
+    if isinstance(result, Estimate):
+        return result.to_dataset()
     if isinstance(result, xr.DataArray):
         result = result.to_dataset(name=result.name or "values")
     if not isinstance(result, xr.Dataset):
@@ -98,7 +99,9 @@ def _panels(plt, names):
 
 def _draw(panel, data, name, k, label, several):
     """Draw a variable of the k-th result into its panel."""
-    values = data[name].squeeze()
+    values = data[name]
+    single = [dim for dim in values.dims if values.sizes[dim] == 1]
+    values = values.squeeze(single if len(single) < values.ndim else single[:-1])
     axes = [dim for dim in values.dims if dim in data.coords]
     if values.ndim > 2 or not axes:
         raise SceneError(
@@ -130,7 +133,8 @@ def _draw_curve(panel, data, values, look, label):
     points = data[over].values
     if limits := _limits(data, values):
         panel.fill_between(points, *limits, color=colour, alpha=0.25, linewidth=0)
-    panel.plot(points, values, color=colour, linestyle=dashes, label=label or None)
+    marker = "o" if len(points) == 1 else None
+    panel.plot(points, values, color=colour, linestyle=dashes, marker=marker, label=label or None)
     panel.set(xlabel=_title(data[over]), ylabel=_title(values))
 
 
@@ -176,28 +180,31 @@ def _draw_map(panel, data, values, colour, label):
     panel.set(xlabel=_title(data[across]), ylabel=_title(data[down]))
 
 
-def _draw_estimates(panel, estimates):
-    numbers = all(isinstance(name, Real) for name in estimates)
-    places = list(estimates) if numbers else range(len(estimates))
-    values = [one.value for one in estimates.values()]
+def _draw_numbers(panel, found, name):
+    """Draw one number of each result with its error, over their names."""
+    numbers = all(isinstance(label, Real) for label in found)
+    places = list(found) if numbers else range(len(found))
+    values = [data[name] for data in found.values()]
+    limits = [_limits(data, data[name]) or (data[name],) * 2 for data in found.values()]
+    bars = np.abs([[float(end) for end in ends] for ends in limits] - np.reshape(values, (-1, 1)))
     panel.errorbar(
         places,
-        values,
-        [one.error for one in estimates.values()],
+        np.ravel(values),
+        bars.T,
         color=BLUE,
         marker="o",
         markersize=3,
         linestyle="none",
         capsize=2,
     )
-    panel.set_ylabel("value")
+    panel.set_ylabel(_title(values[0]))
     if not numbers:
-        alike = len({one.method for one in estimates.values()}) == 1 and len(estimates) > 1
-        texts = [
-            f"{name}\n{'' if alike else one.method}".strip() for name, one in estimates.items()
-        ]
+        methods = [data.attrs.get("method", "") for data in found.values()]
+        if len(set(methods)) == 1 < len(methods):
+            methods = [""] * len(methods)
+        texts = [f"{label}\n{by}".strip() for label, by in zip(found, methods, strict=True)]
         panel.set_xticks(places, texts)
-        panel.set_xlim(-0.5, len(values) - 0.5)
+        panel.set_xlim(-0.5, len(found) - 0.5)
 
 
 def _title(variable):

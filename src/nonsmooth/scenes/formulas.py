@@ -48,17 +48,19 @@ _OPERATIONS = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
 }
-# other signs and names, and what is written here
+# other signs, and what is written here
 _WRITTEN = str.maketrans(
     {"^": "**", "²": "**2", "³": "**3", "·": "*", "×": "*", "−": "-", "η": "eta", "ζ": "zeta"}
     | {"π": "pi", "[": "(", "]": ")", "{": "(", "}": ")"}
 )
-_MEANT = {
+# names from elsewhere, and what is written here
+MEANT = {
     "velocity": "y",
     "displacement": "x",
     "position": "x",
     "deformation": "x",
     "ln": "log",
+    "e": "exp",
     "sgn": "sign",
     "arctan": "atan",
     "fabs": "abs",
@@ -116,7 +118,7 @@ def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
 def _syntax_tree(text):
     """Return the syntax tree of a formula, and the formula as one line."""
     if not isinstance(text, str):
-        raise ExpressionError("it is not text; write it in quotes, for example 'x**2/2'")
+        raise ExpressionError("it is not text; write it in quotes")
     if len(text) > tuning.FORMULA.length:
         raise ExpressionError(f"it has {len(text)} characters; use at most {tuning.FORMULA.length}")
     line = " ".join(text.split())
@@ -240,7 +242,7 @@ class _Reader:
 
     def _unknown(self, name):
         known = [*sorted(self._variables), "pi", *FUNCTIONS]
-        meant = _MEANT.get(name.lower(), name.lower())
+        meant = MEANT.get(name.lower(), name.lower())
         cure = f"write {meant}" if meant in known else f"use {', '.join(known)}"
         return ExpressionError(f"{quoted(name, _PART)} is unknown; {cure}")
 

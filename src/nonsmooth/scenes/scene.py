@@ -92,11 +92,7 @@ class Scene:
                     f"{name} is {quoted(getattr(self, name))}; write a formula in quotes, "
                     f"such as {example!r}"
                 )
-        if self.observable in _FORCES - {self.mechanics.force_name}:
-            raise SceneError(
-                f"observable is {self.observable!r}, the force of another model; write "
-                f"{self.mechanics.force_name!r}"
-            )
+        self._check_force()
         require_moderate("U", self.potential, self.potential_expression, (x,))
         require_slope(self.potential, self.potential_expression, x)
         unknown = self.observable_expression.free_symbols - {*self.variables, penalization}
@@ -160,6 +156,14 @@ class Scene:
 
     def _set(self, name, value):
         object.__setattr__(self, name, value)
+
+    def _check_force(self):
+        """Refuse a name of a force that is nearly the model's, or that of another."""
+        known, name = self.mechanics.force_name, self.observable
+        if name in _FORCES - {known}:
+            raise SceneError(f"observable is {name!r}, the force of another model; write {known!r}")
+        if name.isidentifier() and name != known and difflib.get_close_matches(name, [known]):
+            raise SceneError(f"observable is {quoted(name)}; did you mean {known!r}?")
 
     def _warn_if_not_confined(self):
         """Warn if U grows less than quadratically, against assumption (HU2) of the paper.

@@ -29,9 +29,10 @@ def bounds(threshold: ArrayLike) -> tuple[float, float]:
         If it is neither, or 0 is not between the levels, or no path can cross it.
     """
     levels = require_numbers("threshold", threshold)
-    if levels.shape not in ((), (2,)):
+    if levels.shape not in ((), (2,)) or (levels.shape and levels[0] > 0):
         raise SceneError(
-            f"threshold is {quoted(threshold)}; give a number or a pair (lower, upper)"
+            f"threshold is {quoted(threshold)}; give one number b > 0, or one pair (lower, "
+            "upper) with lower < 0 < upper"
         )
     lower, upper = (-levels, levels) if levels.shape == () else levels
     if not lower < 0 < upper:

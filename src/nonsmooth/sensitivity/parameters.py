@@ -12,12 +12,13 @@ from nonsmooth.scenes.penalties import n as penalization
 from nonsmooth.scenes.scene import Scene
 
 PARAMETERS = ("damping", "n", "sigma")
+_MEANT = {"c_b": "damping", "b": "threshold"}  # what other names stand for
 _SYMBOLS = {"damping": symbols.damping, "n": penalization}
 
 
 def require_parameter_of(scene: Scene, parameter: str, more: tuple[str, ...] = ()) -> str:
     """Return the name of a parameter with respect to which the scene can be differentiated."""
-    name = require_choice("parameter", parameter, PARAMETERS + more)
+    name = require_choice("parameter", parameter, PARAMETERS + more, _MEANT)
     if name == "n" and math.isinf(scene.n):
         raise SceneError(
             "n = inf has no derivative with respect to n; choose a finite n or another parameter"

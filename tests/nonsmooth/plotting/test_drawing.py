@@ -11,7 +11,7 @@ import xarray as xr
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
-from public_results import RESULTS
+from public_results import RESULTS, as_dataset
 from references import FRICTION, OBSTACLE
 
 mpl.use("agg")
@@ -25,12 +25,13 @@ def _no_figures_left():
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_every_public_result_is_drawn(name):
-    """All panels have titles on their axes, and are drawn without warnings."""
+    """All panels have titles on their axes; also of what a file has given back."""
     panels = ns.plot(RESULTS[name]())
     for panel in panels.values():
         panel.figure.draw_without_rendering()
         assert panel.has_data()
         assert panel.get_ylabel()
+    assert ns.plot(as_dataset(RESULTS[name]())).keys() == panels.keys()
 
 
 def test_a_curve_has_the_band_of_its_error():
@@ -55,6 +56,11 @@ def test_results_are_compared_in_one_panel():
     drawn = ns.plot(values)["value"].lines[0]
     assert np.array_equal(drawn.get_xdata(), [1, 10])
     assert np.array_equal(drawn.get_ydata(), [one.value for one in values.values()])
+    times = {str(b): ns.failure_time(FRICTION, b, method="asymptotic") for b in (0.5, 0.6)}
+    (panel,) = ns.plot(times).values()
+    ends = {end for bar in panel.collections[0].get_segments() for end in bar[:, 1]}
+    limits = {float(one[limit].squeeze()) for one in times.values() for limit in ("lower", "upper")}
+    assert sorted(ends) == pytest.approx(sorted(limits), rel=1e-12)
 
 
 def test_brownian_crossings_keep_their_coordinates():

@@ -34,7 +34,7 @@ def test_numbers_and_pairs(threshold, levels):
         ((-1.0, float("nan")), "not a number"),
         (float("inf"), "finite level"),
         ((-np.inf, np.inf), "finite level"),
-        ((-1.0, 0.5, 1.0), "a number or a pair"),
+        ((-1.0, 0.5, 1.0), "one number b > 0"),
         ("high", "give numbers"),
         (None, "threshold"),
     ],

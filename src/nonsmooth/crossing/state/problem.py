@@ -8,6 +8,7 @@ from sympy import Symbol
 
 from nonsmooth.checks import require_choice
 from nonsmooth.errors import SceneError, quoted
+from nonsmooth.scenes.formulas import MEANT
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 from nonsmooth.scenes.thresholds import bounds
@@ -93,7 +94,7 @@ def state_crossing(scene: Scene, variable: str, threshold: ArrayLike) -> StateCr
         If there is no such variable, the start is outside, or a level is a rigid wall that throws
         back while the other is beyond one, so that paths touch a level without passing it.
     """
-    variable = require_choice("variable", variable, [s.name for s in scene.variables])
+    variable = require_choice("variable", variable, [s.name for s in scene.variables], MEANT)
     lower, upper = bounds(threshold)
     scene = scene.with_observable(variable)
     found = StateCrossing(scene, lower, upper)
