@@ -12,11 +12,10 @@ mpl.use("agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.patches import Rectangle
 
 from nonsmooth.plotting.style import BLACK, BLUE, ORANGE
+from reproduction.rendering.mechanics import sketch
 
-INK = {"color": BLACK, "linewidth": 1.2, "solid_capstyle": "butt"}
 STYLE = {
     "axes.spines.right": False,
     "axes.spines.top": False,
@@ -29,80 +28,18 @@ STYLE = {
 }
 
 
-def _line(axis, *points):
-    axis.plot(*np.array(points, dtype=float).T, **INK)
-
-
-def _wall(axis, x, side):
-    _line(axis, (x, -1), (x, 1))
-    for height in np.linspace(-1, 0.85, 12):
-        axis.plot(
-            [x, x + 0.13 * side], [height, height + 0.13], color="0.5", linewidth=0.8, zorder=1
-        )
-
-
-def _dashpot(axis, left, right, height):
-    middle = (left + right) / 2
-    _line(axis, (left, height), (middle, height))
-    _line(axis, (middle, height - 0.09), (middle, height + 0.09))
-    edge = middle + 0.2
-    corners = [(middle - 0.2, 0.14), (edge, 0.14), (edge, -0.14), (middle - 0.2, -0.14)]
-    _line(axis, *[(x, height + dy) for x, dy in corners])
-    _line(axis, (edge, height), (right, height))
-
-
-def _spring(axis, left, right, height):
-    along = np.linspace(0, 1, 300)
-    lead = 0.15 * (right - left)
-    x = left + lead + (right - left - 2 * lead) * along
-    axis.plot(x, height + 0.12 * np.sin(2 * np.pi * 5 * along), **INK)
-    _line(axis, (left, height), (left + lead, height))
-    _line(axis, (right - lead, height), (right, height))
-
-
-def _slider(axis, left, right, height):
-    middle = (left + right) / 2
-    _line(axis, (left, height - 0.07), (middle + 0.28, height - 0.07))
-    _line(axis, (middle - 0.28, height + 0.07), (right, height + 0.07))
-
-
-def _mass(axis, start):
-    _line(axis, (1, 0), (start, 0))
-    axis.add_patch(Rectangle((start, -0.16), 0.32, 0.32, facecolor="0.25", zorder=3))
-    axis.annotate(
-        "",
-        (start + 0.78, 0),
-        (start + 0.34, 0),
-        arrowprops={"arrowstyle": "-|>", "color": BLACK, "shrinkA": 0, "shrinkB": 0},
-    )
-    axis.text(start + 0.82, 0, "$N$", va="center")
-
-
 def _sketch(axis, model):
-    axis.set(xlim=(-1.25, 2.75), ylim=(-1.15, 1.15), aspect="equal")
-    axis.axis("off")
-    _wall(axis, -1, -1)
-    _dashpot(axis, -1, 1, 0.55)
-    axis.text(0.05, 0.8, "$C_b\\,y$", ha="center")
-    _line(axis, (1, -0.55), (1, 0.55))
-    _mass(axis, 1.5)
+    """Draw a model and name its elements."""
+    sketch(axis, model)
+    axis.text(0, 0.75, "$C_b\\,y$", ha="center")
     if model == "elasto_plastic":
-        _spring(axis, -1, 0.05, -0.55)
-        _slider(axis, 0.05, 1, -0.55)
-        axis.text(-0.47, -1.0, "$U'(x)$", ha="center")
-        axis.text(0.53, -1.0, "yields at 1", ha="center")
+        texts = {(-0.45, -0.95): "$U'(x)$", (0.6, -0.95): "yields at 1"}
     elif model == "friction":
-        _spring(axis, -1, 1, 0)
-        _slider(axis, -1, 1, -0.55)
-        axis.text(0.05, -0.37, "$U'(x)$", ha="center")
-        axis.text(0, -1.0, "slips at 1", ha="center")
+        texts = {(-0.58, -0.4): "$U'(x)$", (0, -0.95): "slips at 1"}
     else:
-        _spring(axis, -1, 1, -0.55)
-        axis.text(0, -1.0, "$U'(x)$", ha="center")
-        for x, side in ((1.22, -1), (2.1, 1)):
-            axis.plot([x, x], [0.35, 0.95], color=BLACK, linewidth=2.2)
-            axis.plot([x, x], [-0.95, -0.35], color=BLACK, linewidth=2.2)
-            axis.text(x, 1.0, "$-1$" if side < 0 else "$1$", ha="center")
+        texts = {(0, -0.95): "$U'(x)$", (1.25, -1.25): "$-1$", (2.03, -1.25): "$1$"}
+    for place, text in texts.items():
+        axis.text(*place, text, ha="center")
 
 
 def _law(axis, model):

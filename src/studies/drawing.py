@@ -8,19 +8,20 @@ mpl.use("agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from nonsmooth.plotting.style import ORANGE
 from nonsmooth.plotting.style import STYLE as PRINTED
 from nonsmooth.scenes.scene import Scene
+from reproduction.rendering import mechanics
+from reproduction.rendering.mechanics import arrow, line
 
-LINE = {"color": "black", "linewidth": 1.2, "solid_capstyle": "butt"}
 GREY = {"color": "0.45", "linewidth": 0.7}
 # larger than in print, and the same names of elements on every run
 STYLE = PRINTED | {"font.size": 9, "svg.hashsalt": "nonsmooth"}
 LEFT, MASS, WIDTH, FLOOR = 0.0, 3.0, 1.3, 0.0
+SIZE = 1.35  # of the elements
 
 
 def drawn(scene: Scene, limit: str) -> Figure:
@@ -43,43 +44,36 @@ def drawn(scene: Scene, limit: str) -> Figure:
     axis.add_patch(Rectangle((MASS, 0.25), WIDTH, 1.3, facecolor="#dce8f2", edgecolor="black"))
     axis.text(MASS + WIDTH / 2, 0.9, "$m$", ha="center", va="center", fontsize=13)
     has_spring = scene.potential != "0"
-    _dashpot(axis, LEFT, MASS, 0.5)
+    mechanics.dashpot(axis, LEFT, MASS, 0.5, SIZE)
+    axis.text((LEFT + MASS) / 2 + 0.5, 0.58, "$c$", fontsize=10)
     match scene.mechanics.name:
         case "elasto_plastic":
-            _spring(axis, LEFT, 1.7, 1.3)
-            _slider(axis, 1.7, MASS, 1.3, limit)
+            _spring(axis, LEFT, 1.7)
+            mechanics.slider(axis, 1.7, MASS, 1.3, SIZE)
+            axis.text((1.7 + MASS) / 2, 1.75, limit, fontsize=9, ha="center")
             _rollers(axis)
         case "friction":
             if has_spring:
-                _spring(axis, LEFT, MASS, 1.3)
+                _spring(axis, LEFT, MASS)
             _pad(axis, limit)
         case _:
             if has_spring:
-                _spring(axis, LEFT, MASS, 1.3)
+                _spring(axis, LEFT, MASS)
             _stops(axis, limit)
             _rollers(axis)
-    _arrow(axis, (MASS + 0.35, 1.85), (MASS + WIDTH + 0.25, 1.85))
+    arrow(axis, (MASS + 0.35, 1.85), (MASS + WIDTH + 0.25, 1.85))
     axis.text(MASS + WIDTH + 0.3, 1.85, "displacement", va="center", fontsize=8)
     return figure
 
 
-def _polyline(axis: Axes, *points, **style):
-    axis.plot(*np.array(points).T, **(LINE | style))
-
-
-def _arrow(axis, start, end, style="-|>"):
-    arrow = {"arrowstyle": style, "linewidth": 1, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9}
-    axis.annotate("", end, start, arrowprops=arrow | {"color": "black"})
-
-
 def _ground(axis):
     """Draw the floor and the wall as one body, which moves to and fro."""
-    _polyline(axis, (LEFT, 1.9), (LEFT, FLOOR), (6.3, FLOOR))
+    line(axis, (LEFT, 1.9), (LEFT, FLOOR), (6.3, FLOOR))
     for x in np.arange(0.15, 6.3, 0.3):
         axis.plot([x, x - 0.2], [FLOOR, FLOOR - 0.2], **GREY)
     for y in np.arange(0.15, 1.9, 0.3):
         axis.plot([LEFT, LEFT - 0.2], [y, y - 0.2], **GREY)
-    _arrow(axis, (1.9, -0.62), (3.5, -0.62), "<|-|>")
+    arrow(axis, (1.9, -0.62), (3.5, -0.62), "<|-|>")
     axis.text(3.65, -0.62, "ground acceleration $a(t)$", va="center", fontsize=8)
     # a path of noise, the same in every picture
     t = np.linspace(0, 1.9, 120)
@@ -88,40 +82,9 @@ def _ground(axis):
     axis.plot(-0.2 + t, -0.62 + 0.06 * wave, color=ORANGE, linewidth=0.8)
 
 
-def _spring(axis, left, right, height):
-    lead, coils = 0.15 * (right - left), 6
-    s = np.linspace(0, 1, 4 * coils + 1)
-    zigzag = 0.17 * np.sin(np.pi / 2 * np.arange(4 * coils + 1))
-    x = np.concatenate([[left], left + lead + s * (right - left - 2 * lead), [right]])
-    axis.plot(x, height + np.concatenate([[0], zigzag, [0]]), **LINE)
-    axis.text((left + right) / 2, height + 0.27, "$k$", ha="center", fontsize=10)
-
-
-def _dashpot(axis, left, right, height):
-    middle = (left + right) / 2
-    _polyline(axis, (left, height), (middle, height))
-    _polyline(axis, (middle, height - 0.13), (middle, height + 0.13))
-    _polyline(
-        axis,
-        (middle - 0.3, height + 0.19),
-        (middle + 0.3, height + 0.19),
-        (middle + 0.3, height - 0.19),
-        (middle - 0.3, height - 0.19),
-    )
-    _polyline(axis, (middle + 0.3, height), (right, height))
-    axis.text(middle + 0.5, height + 0.08, "$c$", fontsize=10)
-
-
-def _slider(axis, left, right, height, limit):
-    """Draw two plates that slip on each other at the yield force."""
-    middle = (left + right) / 2
-    _polyline(axis, (left, height), (middle + 0.3, height))
-    _polyline(
-        axis, (middle - 0.3, height + 0.12), (right - 0.12, height + 0.12), (right - 0.12, height)
-    )
-    _polyline(axis, (right - 0.12, height), (right, height))
-    _arrow(axis, (middle, height + 0.5), (middle, height + 0.13))
-    axis.text(middle + 0.08, height + 0.42, limit, fontsize=9, va="center")
+def _spring(axis, left, right):
+    mechanics.spring(axis, left, right, 1.3, SIZE)
+    axis.text((left + right) / 2, 1.57, "$k$", ha="center", fontsize=10)
 
 
 def _pad(axis, limit):
@@ -142,12 +105,12 @@ def _stops(axis, limit):
     gap = 0.42
     for x, way in ((MASS - gap, -1), (MASS + WIDTH + gap, 1)):
         # short enough to leave room for the spring and the dashpot
-        _polyline(axis, (x, FLOOR), (x, 0.28), linewidth=2.2)
-        _polyline(axis, (x, 0.72), (x, 1.1), linewidth=2.2)
-        for y in np.arange(0.05, 1.1, 0.15):
+        line(axis, (x, FLOOR), (x, 0.28), linewidth=2.2)
+        line(axis, (x, 0.72), (x, 1.0), linewidth=2.2)
+        for y in np.arange(0.05, 0.95, 0.15):
             if not 0.28 < y < 0.72:
                 axis.plot([x, x + way * 0.12], [y, y + 0.1], **GREY)
-    _arrow(axis, (MASS + WIDTH, 1.3), (MASS + WIDTH + gap, 1.3), "<|-|>")
+    arrow(axis, (MASS + WIDTH, 1.3), (MASS + WIDTH + gap, 1.3), "<|-|>")
     axis.text(MASS + WIDTH + gap + 0.12, 1.3, f"gap {limit}", fontsize=9, va="center")
 
 
