@@ -46,11 +46,14 @@ _CROSSING = {
     "order": PLAIN,
 }
 _COUNTED = {"precision": PLAIN, "envelope": OF_TIME}
-_THRESHOLDS = {
-    "threshold": (INTEGRAL, "threshold"),
-    "threshold_lower": (INTEGRAL, "lower end of the interval"),
-    "threshold_upper": (INTEGRAL, "upper end of the interval"),
-}
+_THRESHOLDS, _LEVELS = (
+    {
+        "threshold": (kind, "threshold"),
+        "threshold_lower": (kind, "lower end of the interval"),
+        "threshold_upper": (kind, "upper end of the interval"),
+    }
+    for kind in (INTEGRAL, VARIABLE)
+)
 _STATE = {
     "variable": PLAIN,
     "threshold": VARIABLE,
@@ -275,14 +278,15 @@ QUESTIONS: dict[str, Question] = {
             "lower": (PLAIN, "the probability is above"),
             "upper": (PLAIN, "the probability is below"),
             "horizon": (TIME, "time"),
-        },
+        }
+        | _LEVELS,
         _STATE | _COUNTED,
         required=("variable", "threshold", "horizons"),
     ),
     "state_reliability_index": Question(
         "Reliability index of the state",
         "nonsmooth.crossing.state.crossing.state_crossing_probability",
-        _INDEX,
+        _INDEX | _LEVELS,
         _STATE | _COUNTED,
         required=("variable", "threshold", "horizons"),
         then="nonsmooth.reliability.index.reliability_index",

@@ -64,6 +64,29 @@ def curves(
     )
 
 
+def coordinates(thresholds: np.ndarray) -> dict[str, tuple]:
+    """Return the coordinates of a dimension of thresholds.
+
+    Parameters
+    ----------
+    thresholds : numpy.ndarray, shape (m, 2)
+        Lower and upper levels.
+
+    Returns
+    -------
+    dict
+        As for `results.dataset`.
+    """
+    levels = {
+        f"threshold_{word}": ("threshold", side, f"{word} level")
+        for word, side in zip(("lower", "upper"), thresholds.T, strict=True)
+    }
+    lower, upper = thresholds.T
+    if np.all(lower == -upper):
+        levels["threshold"] = "threshold", upper, "threshold b"
+    return levels
+
+
 def one_by_one(solvers: Iterable[Callable[[], dict]]) -> dict[str, np.ndarray]:
     """Solve for one threshold after the other.
 

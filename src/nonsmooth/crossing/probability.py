@@ -28,7 +28,7 @@ from nonsmooth.checks import (
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.brownian import asymptotic_crossing
 from nonsmooth.crossing.corrected_formula import corrected_crossing
-from nonsmooth.crossing.curves import curves, one_by_one
+from nonsmooth.crossing.curves import coordinates, curves, one_by_one
 from nonsmooth.crossing.first_passage.distribution import default_tolerance, deterministic_crossing
 from nonsmooth.crossing.leading.choice import leading_is_quicker
 from nonsmooth.crossing.leading.importance_sampling import importance_sampled_crossing
@@ -49,8 +49,6 @@ from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import intervals
 from nonsmooth.statistics.asymptotic_variance import limit_variance
 from nonsmooth.statistics.mean import mean
-
-LEVELS = "threshold_lower", "threshold_upper"  # coordinates of several thresholds
 
 
 def crossing_probability(
@@ -122,7 +120,7 @@ def crossing_probability(
         Of ``"corrected"``; 1 unless given.
     envelope : str, optional
         s >= 0, a formula in ``t``, the time up to p T: non-stationary noise s(t) sigma dW;
-        ``"monte_carlo"`` only. Several thresholds are then sampled one after the other.
+        ``"monte_carlo"`` only.
 
     Returns
     -------
@@ -183,7 +181,7 @@ def crossing_probability(
 
     def present(found):
         name, values, attributes = found
-        result = curves(values, horizons, name, attributes, _coordinates(thresholds))
+        result = curves(values, horizons, name, attributes, coordinates(thresholds))
         return result if several else result.isel(threshold=0, drop=True)
 
     return answered(solve, present, tol_given=tol is not None)
@@ -208,18 +206,6 @@ def require_options(method: str | None, options: Mapping[str, Any]) -> dict[str,
     if method is not None:
         _by(require_choice("method", method, METHODS), given)
     return given
-
-
-def _coordinates(thresholds):
-    """Return the coordinates of a dimension of thresholds."""
-    lower, upper = thresholds.T
-    levels = {
-        name: ("threshold", side, f"{word} level")
-        for name, side, word in zip(LEVELS, (lower, upper), ("lower", "upper"), strict=True)
-    }
-    if np.all(lower == -upper):
-        levels["threshold"] = "threshold", upper, "threshold b"
-    return levels
 
 
 def _by(method, given):
@@ -335,13 +321,8 @@ def _sampled(
     options = seed, threads, tol, step, paths, precision
     if envelope is None:
         return sampled_crossing(scene, thresholds, horizons, p, *options, most)
-    each = [
-        sampled_state_crossing(IntegralCrossing(scene, *levels), p * horizons, *options, envelope)
-        for levels in np.sqrt(p) * thresholds
-    ]
-    values = {name: np.array([own[name] for own, _ in each]) for name in each[0][0]}
-    runs = [attributes for _, attributes in each]
-    return values, {"step": min(r["step"] for r in runs), "paths": min(r["paths"] for r in runs)}
+    asked = [IntegralCrossing(scene, *levels) for levels in np.sqrt(p) * thresholds]
+    return sampled_state_crossing(asked, p * horizons, *options, envelope)
 
 
 def _deterministic(scene, thresholds, horizons, p, seed, threads, tol=None):

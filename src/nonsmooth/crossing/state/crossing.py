@@ -17,9 +17,9 @@ from nonsmooth.checks import (
     require_threads,
     require_tolerance,
 )
-from nonsmooth.crossing.curves import curves
+from nonsmooth.crossing.curves import coordinates, curves, one_by_one
 from nonsmooth.crossing.state import line, plane, tuning
-from nonsmooth.crossing.state.problem import state_crossing
+from nonsmooth.crossing.state.problem import state_crossings
 from nonsmooth.crossing.state.sampled import sampled_state_crossing
 from nonsmooth.errors import SceneError, answered, first_answer
 from nonsmooth.paths.sampling import PRECISIONS
@@ -30,7 +30,7 @@ from nonsmooth.scenes.scene import Scene, require_scene
 def state_crossing_probability(
     scene: Scene,
     variable: str,
-    threshold: float | tuple[float, float],
+    threshold: ArrayLike,
     horizons: ArrayLike,
     method: str | None = None,
     tol: float | None = None,
@@ -52,9 +52,10 @@ def state_crossing_probability(
         Its observable does not matter.
     variable : {"x", "y", "eta", "zeta"}
         The displacement, the velocity, or a variable of the scene's noise.
-    threshold : float or (float, float)
+    threshold : float, (float, float) or array_like
         b > 0: the interval is (-b, b). Or lower < 0 < upper, one of which may be infinite. The
-        variable starts inside. In units of the variable, "1".
+        variable starts inside. Or several, as for `crossing_probability`. In units of the variable,
+        "1".
     horizons : array_like, shape (k,)
         Increasing T > 0, "1".
     method : {"monte_carlo", "deterministic"}, optional
@@ -85,6 +86,8 @@ def state_crossing_probability(
     xarray.Dataset
         Over `horizon`, with the method among its attributes: `probability` and its distance
         `probability_error` to the probability asked for, which is between `lower` and `upper`.
+        Several thresholds are a dimension before it, as `crossing_probability` has them. By Monte
+        Carlo the same paths serve all; solved ones take a solution each.
 
         - ``"deterministic"``: the error is estimated from two resolutions.
         - ``"monte_carlo"``: the bias of the time step and the standard error together, and `lower`
@@ -109,7 +112,7 @@ def state_crossing_probability(
     [0.2107 0.9439]
     """
     require_scene(scene)
-    asked = state_crossing(scene, variable, threshold)
+    asked, several = state_crossings(scene, variable, threshold)
     times = require_increasing("horizons", horizons)
     method = None if method is None else require_choice("method", method, METHODS)
     options = {"tol": tol, "step": step, "paths": paths, "precision": precision}
@@ -133,16 +136,19 @@ def state_crossing_probability(
 
     def present(found):
         name, values, attributes = found
-        return curves(values, times, name, attributes)
+        levels = coordinates(np.array([(one.lower, one.upper) for one in asked]))
+        result = curves(values, times, name, attributes, levels)
+        return result if several else result.isel(threshold=0, drop=True)
 
     return answered(solve, present, tol_given=tol is not None)
 
 
 def _solver(asked):
     """Return the deterministic solver and its usual tolerance, None if there is none."""
-    if line.applies(asked):
-        return line.solved, tuning.LINE.tolerance
-    return (plane.solved, tuning.PLANE.tolerance) if plane.applies(asked) else None
+    for method, settings in ((line, tuning.LINE), (plane, tuning.PLANE)):
+        if all(method.applies(one) for one in asked):
+            return method.solved, settings.tolerance
+    return None
 
 
 def _fitting(asked, given):
@@ -151,7 +157,7 @@ def _fitting(asked, given):
         return ["monte_carlo"]
     if "tol" not in given:
         return ["deterministic", "monte_carlo"]
-    if not line.applies(asked) and given["tol"] >= tuning.PLANE.faster_sampled:
+    if not line.applies(asked[0]) and given["tol"] >= tuning.PLANE.faster_sampled:
         return ["monte_carlo", "deterministic"]
     sampled = given["tol"] >= tuning.SAMPLED.least_tolerance
     return ["deterministic", "monte_carlo"] if sampled else ["deterministic"]
@@ -166,19 +172,23 @@ def _taken(name, given):
 
 
 def _deterministic(asked, times, tol=None):
-    solver = _solver(asked)
+    solver, scene = _solver(asked), asked[0].scene
     if solver is None:
         raise SceneError(
-            f"crossings of {asked.variable} are solved for one or two variables with finite n, not "
-            f"for ({', '.join(asked.scene.state)}) with {asked.scene.noise.title} at n = "
-            f"{asked.scene.n:g}; use method='monte_carlo'"
+            f"crossings of {asked[0].variable} are solved for one or two variables with finite n, "
+            f"not for ({', '.join(scene.state)}) with {scene.noise.title} at n = {scene.n:g}; "
+            "use method='monte_carlo'"
         )
     solve, usual = solver
 
-    def present(found):
-        return {"probability": found[0], "probability_error": found[1]}, {}
+    def one(question):
+        return answered(
+            lambda: solve(question, times, usual if tol is None else tol),
+            lambda found: {"probability": found[0], "probability_error": found[1]},
+        )
 
-    return answered(lambda: solve(asked, times, usual if tol is None else tol), present)
+    solvers = (partial(one, question) for question in asked)
+    return answered(lambda: one_by_one(solvers), lambda values: (values, {}))
 
 
 # checks of the parameters that only some methods have
@@ -190,8 +200,9 @@ _OPTIONS: dict[str, Callable] = {
     "envelope": lambda envelope: envelope,  # is read where its values are wanted
 }
 
-# Each takes a StateCrossing, the horizons, and those of the other parameters that it has. It
-# returns a dict of the variables over the horizons and a dict of attributes.
+# Each takes a StateCrossing for each threshold, the horizons, and those of the other parameters
+# that it has. It returns a dict of the variables over thresholds and horizons and a dict of
+# attributes.
 METHODS: dict[str, Callable] = {
     "deterministic": _deterministic,
     "monte_carlo": sampled_state_crossing,

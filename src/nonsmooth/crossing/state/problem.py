@@ -1,8 +1,9 @@
 """What is asked: the variable, the interval that it leaves, and the scene that determines it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import numpy as np
 from numpy.typing import ArrayLike
 from sympy import Symbol
 
@@ -11,7 +12,7 @@ from nonsmooth.errors import SceneError, quoted
 from nonsmooth.scenes.formulas import MEANT
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
-from nonsmooth.scenes.thresholds import bounds
+from nonsmooth.scenes.thresholds import intervals
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,9 @@ class IntegralCrossing(StateCrossing):
         return False
 
 
-def state_crossing(scene: Scene, variable: str, threshold: ArrayLike) -> StateCrossing:
+def state_crossings(
+    scene: Scene, variable: str, threshold: ArrayLike
+) -> tuple[list[StateCrossing], bool]:
     """Check what is asked.
 
     Parameters
@@ -79,38 +82,43 @@ def state_crossing(scene: Scene, variable: str, threshold: ArrayLike) -> StateCr
     scene : Scene
     variable : str
         Of the scene's state.
-    threshold : float or (float, float)
-        As for `scenes.thresholds.bounds`, in units of the variable.
+    threshold : array_like
+        As for `scenes.thresholds.intervals`, in units of the variable.
 
     Returns
     -------
-    StateCrossing
-        Between walls, paths do not depend on n until they reach one. Where n = inf and the interval
-        ends before the walls or at them, a finite n therefore replaces it.
+    asked : list of StateCrossing
+        One for each threshold, all of one scene. Between walls, paths do not depend on n until they
+        reach one. Where n = inf and all intervals end before the walls or at them, a finite n
+        therefore replaces it.
+    several : bool
+        Whether it is a list of thresholds.
 
     Raises
     ------
     SceneError
         If there is no such variable, the start is outside, or a level is a rigid wall that throws
-        back while the other is beyond one, so that paths touch a level without passing it.
+        back while another is beyond one, so that paths touch a level without passing it.
     """
     variable = require_choice("variable", variable, [s.name for s in scene.variables], MEANT)
-    lower, upper = bounds(threshold)
+    levels, several = intervals(threshold)
     scene = scene.with_observable(variable)
-    found = StateCrossing(scene, lower, upper)
-    if not lower < found.start < upper:
-        raise SceneError(
-            f"{variable} starts at {found.start:g}, outside of threshold = {quoted(threshold)}; "
-            "start between the levels"
-        )
+    found = [StateCrossing(scene, lower, upper) for lower, upper in levels.tolist()]
+    for one in found:
+        if not one.lower < one.start < one.upper:
+            raise SceneError(
+                f"{variable} starts at {one.start:g}, outside of threshold = {quoted(threshold)}; "
+                "start between the levels"
+            )
     wall = scene.mechanics.wall
     if variable != "x" or math.isfinite(scene.n) or math.isinf(wall):
-        return found
-    if -wall <= lower and upper <= wall:
-        return StateCrossing(scene.with_n(1.0), lower, upper)
-    if scene.mechanics.in_potential and (lower == -wall or upper == wall):
+        return found, several
+    if np.all(np.abs(levels) <= wall):
+        soft = scene.with_n(1.0)
+        return [replace(one, scene=soft) for one in found], several
+    if scene.mechanics.in_potential and np.any(np.abs(levels) == wall):
         raise SceneError(
             f"threshold = {quoted(threshold)} has a level on the rigid wall at {wall:g}, which x "
-            "touches but does not pass; choose a level inside, or -1 and 1"
+            "touches but does not pass; choose levels inside, or -1 and 1 alone"
         )
-    return found
+    return found, several

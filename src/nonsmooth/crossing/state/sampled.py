@@ -1,6 +1,7 @@
 """Crossings of the state by Monte Carlo; a tolerance decides on paths and time step."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from nonsmooth.paths.tuning import MONTE_CARLO
 
 
 def sampled_state_crossing(
-    asked: StateCrossing,
+    asked: Sequence[StateCrossing],
     times: np.ndarray,
     seed: int | tuple,
     threads: int | None,
@@ -28,15 +29,17 @@ def sampled_state_crossing(
     precision: str = "float32",
     envelope: str | None = None,
 ) -> tuple[dict, dict]:
-    """Average the probabilities of paths to have left the interval.
+    """Average the probabilities of paths to have left intervals.
 
-    All paths are also run with twice the step on the same noise, from which follows the bias. A
-    pilot with a coarse step tells how many paths and which step the tolerance takes, unless they
-    are given.
+    One set of paths serves all intervals; the one that needs most paths and the shortest step
+    decides. All paths are also run with twice the step on the same noise, from which follows the
+    bias. A pilot with a coarse step tells how many paths and which step the tolerance takes, unless
+    they are given.
 
     Parameters
     ----------
-    asked : StateCrossing
+    asked : sequence of StateCrossing
+        Of one variable of one scene.
     times : numpy.ndarray, shape (t,)
         Increasing, positive.
     seed, threads, tol, step, paths, precision, envelope
@@ -77,7 +80,7 @@ def sampled_state_crossing(
         if not enough:
             own_paths = max(own_paths, paths_wanted(counts, own_paths, tol))
         label = seed
-        value = found[0]["probability"][-1]
+        value = found[0]["probability"].flat[-1]
         told = f"W = {value:.3g} has an error of {off:.1g}"
         steps = 3 / 2 * times[-1] / own_step
         require_possible(own_paths, steps, told, tol, result=found)
@@ -90,19 +93,20 @@ def sampled_state_crossing(
 
 def _coarsest(asked, times):
     """Longest step of the pilot: rough paths must not pass the interval in one."""
-    step = first_step(asked.scene, times)
-    if asked.driven:
-        way = min(asked.upper - asked.start, asked.start - asked.lower)
-        step = min(step, (tuning.SAMPLED.part_of_way * way / asked.scene.noise.sigma) ** 2)
+    step = first_step(asked[0].scene, times)
+    if asked[0].driven:
+        way = min(min(one.upper - one.start, one.start - one.lower) for one in asked)
+        step = min(step, (tuning.SAMPLED.part_of_way * way / asked[0].scene.noise.sigma) ** 2)
     return step
 
 
 def _sample(asked, times, sampling, envelope):
-    """Return the sum of the probabilities to have left, and values and attributes."""
-    levels = asked.lower, asked.upper
-    sums = crossed(asked.scene, asked.followed, levels, times, sampling, envelope)
+    """Return the sums of the probabilities to have left, and values and attributes."""
+    levels = [(one.lower, one.upper) for one in asked]
+    sums = crossed(asked[0].scene, asked[0].followed, levels, times, sampling, envelope)
+    counts, change, square = sums.transpose(1, 2, 0)
     paths = sampling.paths
-    counts, change, square = np.clip(sums[:, 0], 0.0, paths), sums[:, 1] / paths, sums[:, 2] / paths
+    counts, change, square = np.clip(counts, 0.0, paths), change / paths, square / paths
     # if no path shows a change, the error is that of a single path with different outcomes
     factor = fine_bias_over_change(tuning.SAMPLED.order)
     error = factor * np.sqrt(np.maximum(square - change**2, 1 / paths) / paths)

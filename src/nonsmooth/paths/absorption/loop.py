@@ -1,4 +1,4 @@
-"""The loop over time steps that follows the probability of paths to have stayed in an interval.
+"""The loop over time steps that follows the probabilities of paths to have stayed in intervals.
 
 Two panels advance on the same noise, the second with steps twice as long, so that the bias of the
 step is known for every path. Each step begins and ends with a half-flow, because only the states
@@ -26,20 +26,21 @@ STATIONARY = np.empty(0)  # no factors of the noise
 _FAR = 40.0  # exponents of crossing within a step beyond which its probability, 4e-18, is nothing
 
 
-class Interval(NamedTuple):
+class Intervals(NamedTuple):
     """What is left: a row of the panels, the levels, and the noise in that row.
 
     Attributes
     ----------
     row : int
-    lower, upper : float
+    lower, upper : numpy.ndarray, shape (m,)
+        Of each interval; there may be none, and paths then only move.
     intensity : float
         Variance of the noise in the row per unit of time; 0 if it drives another variable.
     """
 
     row: int
-    lower: float
-    upper: float
+    lower: np.ndarray
+    upper: np.ndarray
     intensity: float
 
 
@@ -50,7 +51,7 @@ def march_survival(
     other: Panel,
     lanes: int,
     steps: int,
-    interval: Interval,
+    intervals: Intervals,
     before: np.ndarray,
     survival: np.ndarray,
     scale: np.ndarray = STATIONARY,
@@ -67,32 +68,32 @@ def march_survival(
         Number of paths.
     steps : int
         Of the coarse paths.
-    interval : Interval
+    intervals : Intervals
     before : numpy.ndarray, shape (2, lanes)
         Values of the row now, of fine and coarse paths; kept up to date.
-    survival : numpy.ndarray, shape (2, lanes)
+    survival : numpy.ndarray, shape (2, m, lanes)
         Probabilities to have stayed inside; kept up to date.
     scale : numpy.ndarray, shape (2 steps,) or (0,)
         Factors of the noise in the fine steps; empty if there are none.
     """
     for first, last in pieces(steps):
-        if not survival.any():
+        if survival.size and not survival.any():
             return
         own = scale[2 * first : 2 * last]
-        _march(fine, coarse, panel, other, lanes, last - first, interval, before, survival, own)
+        _march(fine, coarse, panel, other, lanes, last - first, intervals, before, survival, own)
         count(3 * (last - first))
 
 
 def compile_march_survival(fine: Any, coarse: Any, panel: Panel) -> None:
     """Compile `march_survival` for two sets of coefficients and the precision of a panel."""
-    nowhere = Interval(0, -math.inf, math.inf, 0.0)
+    nowhere = Intervals(0, np.empty(0), np.empty(0), 0.0)
     with announced(_march):
-        nothing = np.empty((2, 0))
-        _march(fine, coarse, panel, panel, 0, 0, nowhere, nothing, nothing, STATIONARY)
+        nothing = np.empty((2, 0)), np.empty((2, 0, 0))
+        _march(fine, coarse, panel, panel, 0, 0, nowhere, *nothing, STATIONARY)
 
 
 @kernel
-def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival, scale):
+def _march(fine, coarse, panel, other, lanes, steps, intervals, before, survival, scale):
     words, data, _ = of_known_shape(panel)
     _, joined, _ = of_known_shape(other)
     for k in range(2 * steps):
@@ -107,7 +108,7 @@ def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival,
                 if len(scale) > 0:
                     _multiply(data, normal, fine.normals, own, lanes)
                 noise_kick(fine, data, normal, lanes)
-        _survive(data, interval, fine.step * own**2, before[0], survival[0], lanes)
+        _survive(data, intervals, fine.step * own**2, before[0], survival[0], lanes)
         if odd:
             if len(scale) > 0:
                 _multiply(joined, 0, 2, joint, lanes)
@@ -115,7 +116,7 @@ def _march(fine, coarse, panel, other, lanes, steps, interval, before, survival,
                 mechanical_flow(coarse, joined, end == 0, end == 1, lanes)
                 if end == 0:
                     noise_kick(coarse, joined, 0, lanes)
-            _survive(joined, interval, coarse.step * joint**2, before[1], survival[1], lanes)
+            _survive(joined, intervals, coarse.step * joint**2, before[1], survival[1], lanes)
 
 
 @inlined
@@ -126,24 +127,27 @@ def _multiply(data, first, count, factor, lanes):
 
 
 @inlined
-def _survive(data, interval, span, before, survival, lanes):
+def _survive(data, intervals, span, before, survival, lanes):
     """Multiply the probabilities with those of having stayed inside during the last step.
 
     Parameters are as for `march_survival`; `span` is the step times the square of its factor.
     """
-    variance = interval.intensity * span
-    lower, upper = interval.lower, interval.upper
+    variance = intervals.intensity * span
+    now = data[intervals.row]
+    for j in range(len(intervals.lower)):
+        lower, upper, inside = intervals.lower[j], intervals.upper[j], survival[j]
+        for i in range(lanes):
+            start, end = before[i], float(now[i])
+            if inside[i] == 0:
+                continue
+            if end >= upper or end <= lower:
+                inside[i] = 0
+            elif variance > 0:
+                above = 2 * (upper - start) * (upper - end) / variance
+                below = 2 * (start - lower) * (end - lower) / variance
+                if above < _FAR:
+                    inside[i] *= -math.expm1(-above)
+                if below < _FAR:
+                    inside[i] *= -math.expm1(-below)
     for i in range(lanes):
-        start, end = before[i], float(data[interval.row, i])
-        before[i] = end
-        if survival[i] == 0:
-            continue
-        if end >= upper or end <= lower:
-            survival[i] = 0
-        elif variance > 0:
-            above = 2 * (upper - start) * (upper - end) / variance
-            below = 2 * (start - lower) * (end - lower) / variance
-            if above < _FAR:
-                survival[i] *= -math.expm1(-above)
-            if below < _FAR:
-                survival[i] *= -math.expm1(-below)
+        before[i] = now[i]

@@ -1,4 +1,7 @@
-"""How many paths of an ensemble have left an interval of the state, and what the step changes."""
+"""Paths with two steps under an envelope, and how many of them have left intervals of the state."""
+
+import functools
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -6,7 +9,7 @@ from numpy.typing import ArrayLike
 from nonsmooth.paths.absorption.envelope import scales
 from nonsmooth.paths.absorption.loop import (
     STATIONARY,
-    Interval,
+    Intervals,
     compile_march_survival,
     march_survival,
 )
@@ -23,21 +26,21 @@ from nonsmooth.scenes.symbols import STATE_VARIABLES
 def crossed(
     scene: Scene,
     variable: str | None,
-    levels: tuple[float, float],
+    levels: ArrayLike,
     times: ArrayLike,
     sampling: Sampling,
     envelope: str | None = None,
 ) -> np.ndarray:
-    """Sum up the probabilities of paths to have left an interval.
+    """Sum up the probabilities of paths to have left intervals.
 
     Parameters
     ----------
     scene : Scene
     variable : str or None
-        The variable of the state that leaves it; None stands for int g, which is then added up in
+        The variable of the state that leaves them; None stands for int g, which is then added up in
         the precision of the steps.
-    levels : (float, float)
-        Lower and upper end, between which it starts.
+    levels : array_like, shape (m, 2)
+        Lower and upper ends, between which it starts.
     times : array_like, shape (t,)
         Increasing.
     sampling : Sampling
@@ -47,7 +50,7 @@ def crossed(
 
     Returns
     -------
-    numpy.ndarray, shape (t, 3)
+    numpy.ndarray, shape (t, 3, m)
         Sums over the paths of C, C' - C and (C' - C)^2; C is the probability to have left the
         interval with the step, and C' that with twice the step.
 
@@ -56,8 +59,46 @@ def crossed(
     SceneError
         If a path diverges, or the envelope is negative.
     """
+
+    def sums(_panels, survival, _count):
+        change = survival[0] - survival[1]
+        return np.array([np.sum(part, axis=-1) for part in (1 - survival[0], change, change**2)])
+
+    intervals = _intervals(scene, variable, np.asarray(levels, dtype=float))
+    return functools.reduce(np.add, over_blocks(scene, intervals, times, sampling, envelope, sums))
+
+
+def over_blocks(
+    scene: Scene,
+    intervals: Intervals,
+    times: ArrayLike,
+    sampling: Sampling,
+    envelope: str | None,
+    reduce: Callable,
+) -> Iterator[np.ndarray]:
+    """Simulate every block of paths with two steps and collect results at the output times.
+
+    Parameters
+    ----------
+    scene, times, sampling, envelope
+        As for `crossed`.
+    intervals : Intervals
+    reduce : callable
+        Takes a block's panels with the step and with twice the step, the probabilities of their
+        paths to have stayed inside of the intervals, shape (2, m, count), and the number of paths;
+        returns an array, which is kept.
+
+    Yields
+    ------
+    numpy.ndarray
+        One per block, in their order; the first axis is the output time.
+
+    Raises
+    ------
+    SceneError
+        As `crossed` does.
+    """
     scheme, precision = sampling.scheme, sampling.precision
-    interval = _interval(scene, variable, levels)
     grid = equal_steps(times, 2 * sampling.step)
     pairs = {
         h: (
@@ -71,21 +112,16 @@ def crossed(
 
     def run(job):
         block, count = job
-        panel, other = (new_panel(scene, sampling.seed, block, precision) for _ in range(2))
-        before = np.tile(panel.data[interval.row, :count].astype(float), (2, 1))
-        survival, sums = np.ones((2, count)), np.zeros((len(grid), 3))
-        for k, (steps, h) in enumerate(grid):
-            both = (*pairs[h], panel, other, count, steps, interval, before, survival)
-            march_survival(*both, factors[k])
-            change = survival[0] - survival[1]
-            sums[k] = np.sum(1 - survival[0]), change.sum(), np.sum(change**2)
+        panels = [new_panel(scene, sampling.seed, block, precision) for _ in range(2)]
+        before = np.tile(panels[0].data[intervals.row, :count].astype(float), (2, 1))
+        survival, kept = np.ones((2, len(intervals.lower), count)), []
+        for (steps, h), own in zip(grid, factors, strict=True):
+            march_survival(*pairs[h], *panels, count, steps, intervals, before, survival, own)
+            kept.append(reduce(panels, survival, count))
         require_finite(before)
-        return sums
+        return np.array(kept)
 
-    total = np.zeros((len(grid), 3))
-    for sums in parallel(run, sampling, 3 * sum(steps for steps, _ in grid)):
-        total += sums
-    return total
+    yield from parallel(run, sampling, 3 * sum(steps for steps, _ in grid))
 
 
 def _factors(envelope, grid):
@@ -99,9 +135,10 @@ def _factors(envelope, grid):
     ]
 
 
-def _interval(scene, variable, levels):
+def _intervals(scene, variable, levels):
+    lower, upper = np.ascontiguousarray(levels.T)
     if variable is None:
-        return Interval(DELTA, *levels, 0.0)
+        return Intervals(DELTA, lower, upper, 0.0)
     place = [symbol.name for symbol in STATE_VARIABLES].index(variable)
     driven = variable == scene.noise.driven.name
-    return Interval(STATE[place], *levels, scene.noise.sigma**2 if driven else 0.0)
+    return Intervals(STATE[place], lower, upper, scene.noise.sigma**2 if driven else 0.0)

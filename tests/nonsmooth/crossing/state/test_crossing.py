@@ -32,6 +32,30 @@ def test_bad_arguments(arguments, told):
         ns.state_crossing_probability(FRICTION, *arguments)
 
 
+def test_several_thresholds():
+    """A dimension before the horizons; each is what it is alone, by solving and on the same paths.
+
+    Of a rigid obstacle, one beyond the walls keeps the walls for all.
+    """
+    levels = [(-0.5, np.inf), (-0.7, 0.8)]
+    for options in ({}, {"step": 0.1, "paths": 2000}):
+        run = ns.state_crossing_probability(FRICTION, "y", levels, [1, 2], **options)
+        assert run["probability"].dims == ("threshold", "horizon")
+        assert run["threshold_upper"].values.tolist() == [np.inf, 0.8]
+        for k, one in enumerate(levels):
+            alone = ns.state_crossing_probability(FRICTION, "y", one, [1, 2], **options)
+            assert alone.equals(run.isel(threshold=k, drop=True))
+    rigid = OBSTACLE.with_n(np.inf)
+    run = ns.state_crossing_probability(rigid, "x", [0.5, 2], [5], step=0.02, paths=2000)
+    assert run["threshold"].values.tolist() == [0.5, 2]
+    assert run["probability"][0] > 0.5
+    assert run["probability"][1] == 0
+    with pytest.raises(SceneError, match="rigid wall"):
+        ns.state_crossing_probability(rigid, "x", [1, 2], [5])
+    with pytest.raises(SceneError, match="outside of threshold"):
+        ns.state_crossing_probability(ns.Scene("friction", start={"y": 1}), "y", [2, 0.5], [5])
+
+
 def test_start_outside():
     """A variable that starts outside has crossed already: the question is refused."""
     with pytest.raises(SceneError, match="starts at 2, outside"):
