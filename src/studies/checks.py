@@ -142,11 +142,12 @@ def _about(name, question, scene, error):
 
 
 def _check_envelope(question, given, units):
-    """Evaluate an envelope at many of the user's times up to the last horizon."""
+    """Evaluate an envelope at many of the user's times up to the last one."""
     if "envelope" not in question:
         return
     try:
-        last = float(np.max(given["horizons"])) * float(given.get("p", 1.0))
+        times = given["horizons"] if "horizons" in given else given["times"]
+        last = float(np.max(times)) * float(given.get("p", 1.0))
     except (TypeError, ValueError):  # is refused by the question itself
         return
     step = last * units.factor(TIME) / ENVELOPE_POINTS

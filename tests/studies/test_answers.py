@@ -195,6 +195,11 @@ def test_an_envelope_is_in_the_users_time():
     assert abs(W - float(found["probability"][0])) < allowed
     wrong = answer(STRUCTURE, asked | {"envelope": "exp(-t/2.513)"}, {"length": "mm"}, 1)
     assert abs(W - float(wrong["probability"][0])) > 3 * allowed
+    spread = {"ask": "variance", "times": ["5 s"], "tol": "200 mm^2/s", "envelope": "exp(-t)"}
+    v = answer(STRUCTURE, spread, {"length": "mm"}, 1)["v"]
+    assert v.attrs["units"] == "mm2"
+    own = 1e6 * z.var()
+    assert abs(own - float(v[0])) < sigmas * own * math.sqrt(2 / paths) + own * 2 * dt + 1000
     minutes = answer(STRUCTURE, asked | {"envelope": "exp(-60*t)"}, {"time": "min"}, 1)
     assert minutes["probability"].values == pytest.approx(found["probability"].values, abs=1e-12)
 

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths import tuning
+from nonsmooth.paths.absorption.moving import moments_under_envelope
 from nonsmooth.paths.ensembles import coupled, gram
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import bias_over_change, mean_bias, moments, step_bias
@@ -108,6 +109,7 @@ def choose_step(
     seed: int | tuple,
     threads: int | None,
     scheme: str,
+    envelope: str | None = None,
 ) -> float:
     """Find the step whose relative bias of the variance is below `tol`.
 
@@ -121,8 +123,12 @@ def choose_step(
         threads=threads,
         scheme=scheme,
     )
-    found = moments(gram(scene, times, pilot))
-    bias, error = halved_step_bias(scene, times, pilot)["variance"]
+    if envelope is None:
+        found = moments(gram(scene, times, pilot))
+        bias, error = halved_step_bias(scene, times, pilot)["variance"]
+    else:
+        found = moments_under_envelope(scene, times, pilot, envelope)
+        bias, error = found["variance_bias"], found["variance_bias_error"]
     worst = (np.abs(bias) + 2 * error)[-1] / found["variance"][-1]
     return refined_step(step, worst, tol, registry.scheme(scene, scheme).weak_order(scene))
 

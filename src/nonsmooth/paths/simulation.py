@@ -17,6 +17,7 @@ from nonsmooth.checks import (
 )
 from nonsmooth.errors import SceneError
 from nonsmooth.paths import tuning
+from nonsmooth.paths.absorption.moving import moments_under_envelope, paths_under_envelope
 from nonsmooth.paths.ensembles import gram, paths_at
 from nonsmooth.paths.moments import moments
 from nonsmooth.paths.resolution import (
@@ -57,6 +58,7 @@ def simulate(
     scheme: str = "strang",
     precision: str = "float32",
     threads: int | None = None,
+    envelope: str | None = None,
 ) -> xr.Dataset:
     """Simulate a scene.
 
@@ -86,6 +88,8 @@ def simulate(
         Arithmetic of the moments' steps; their sums, and kept paths, are in double precision.
     threads : int, optional
         All cores unless given.
+    envelope : str, optional
+        s >= 0, a formula in ``t``, such as ``"t*exp(1 - t)"``: non-stationary noise s(t) sigma dW.
 
     Returns
     -------
@@ -113,21 +117,26 @@ def simulate(
     seed, threads = require_seed(seed), require_threads(threads)
     keep = require_choice("keep", keep, ("moments", "paths"))
     precision = require_choice("precision", precision, PRECISIONS)
-    registry.scheme(scene, scheme)  # raises an error if it cannot simulate the scene
+    chosen = registry.scheme(scene, scheme)  # raises an error if it cannot simulate the scene
+    if envelope is not None and not chosen.shares_noise:
+        raise SceneError(f"scheme is {scheme!r}, which takes no envelope; use 'strang'")
     if keep == "moments" and count == 1:
         raise SceneError("one path has no variance; choose more paths, or keep='paths'")
     if step is None:
         share = (1 - tuning.MONTE_CARLO.spread_share) * tol
-        step = choose_step(scene, at[-1:], share, seed, threads, scheme)
+        step = choose_step(scene, at[-1:], share, seed, threads, scheme, envelope)
         if paths is None:
             require_possible(count, at[-1] / step, "the variance of int g is sampled", tol)
     sampling = Sampling(step, count, seed, threads=threads, scheme=scheme, precision=precision)
-    data = (_paths if keep == "paths" else _statistics)(scene, at, sampling)
+    data = (_paths if keep == "paths" else _statistics)(scene, at, sampling, envelope)
     return data.assign_attrs(step=step, paths=count)
 
 
-def _paths(scene, times, sampling):
-    kept = paths_at(scene, times, sampling)
+def _paths(scene, times, sampling, envelope):
+    if envelope is None:
+        kept = paths_at(scene, times, sampling)
+    else:
+        kept = paths_under_envelope(scene, times, sampling, envelope)
     names = [*scene.state, "delta"]
     titles = TITLES | {"delta": "int g"}
     return dataset(
@@ -136,13 +145,16 @@ def _paths(scene, times, sampling):
     )
 
 
-def _statistics(scene, times, sampling):
-    found = moments(gram(scene, times, sampling))
-    halving = replace(
-        sampling.labelled("halving"), paths=halving_paths(sampling.paths), precision="float32"
-    )
-    for name, bias in halved_step_bias(scene, times, halving).items():
-        found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
+def _statistics(scene, times, sampling, envelope):
+    if envelope is None:
+        found = moments(gram(scene, times, sampling))
+        halving = replace(
+            sampling.labelled("halving"), paths=halving_paths(sampling.paths), precision="float32"
+        )
+        for name, bias in halved_step_bias(scene, times, halving).items():
+            found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
+    else:
+        found = moments_under_envelope(scene, times, sampling, envelope)
     last = (found[name][-1] for name in ("variance", "variance_bias", "variance_bias_error"))
     require_resolved(sampling.step, *last)
     return dataset(

@@ -24,6 +24,7 @@ def sampled_moments(
     seed: int | tuple = 0,
     threads: int | None = None,
     most: float = MONTE_CARLO.most_steps,
+    envelope: str | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Sample w and v of `statistics.variance`.
 
@@ -41,6 +42,8 @@ def sampled_moments(
     most : float
         Largest number of steps of all paths together. If more are needed, this raises an error
         instead of trying.
+    envelope : str, optional
+        As for `statistics.variance`.
 
     Returns
     -------
@@ -66,6 +69,7 @@ def sampled_moments(
             seed=labelled(seed, attempt),
             times=times,
             threads=threads,
+            envelope=envelope,
         )
         own, bias, spread = (
             np.abs(run[f"variance_{part}"].values) / times
@@ -100,7 +104,9 @@ def sampled_moments(
             f"v(tau)/tau = {size:.3g} at tau = {times[-1]:g} rests on the few of "
             f"{run.attrs['paths']} paths that have moved; choose a longer time"
         )
-    mean, uncertain = _stationary_mean(scene, labelled(seed, "stationary"), threads)
+    mean, uncertain = 0.0, 0.0
+    if envelope is None:
+        mean, uncertain = _stationary_mean(scene, labelled(seed, "stationary"), threads)
     w = run["mean"].values - mean * times
     w_error = np.abs(run["mean_bias"]) + np.hypot(run["mean_error"], run["mean_bias_error"])
     v, v_error = run["variance"].values, times * (bias + np.hypot(own, spread))

@@ -34,6 +34,7 @@ def variance(
     method: str | None = None,
     seed: int | tuple = 0,
     threads: int | None = None,
+    envelope: str | None = None,
 ) -> xr.Dataset:
     """Mean w(start, tau) and variance v(start, tau) of int_0^tau g - E g, eq. (36) of the paper.
 
@@ -53,6 +54,9 @@ def variance(
         taken for all others.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
+    envelope : str, optional
+        s >= 0, a formula in ``t``, such as ``"t*exp(1 - t)"``: non-stationary noise s(t) sigma dW,
+        by Monte Carlo. There is no stationary mean then, and w is that of int_0^tau g.
 
     Returns
     -------
@@ -80,10 +84,12 @@ def variance(
     method = None if method is None else require_choice("method", method, METHODS)
     seed, threads = require_seed(seed), require_threads(threads)
     if not scene.state:  # g is constant
-        return _dataset(
-            times, np.zeros((2, len(times))), np.zeros((2, len(times))), "deterministic"
-        )
-    solve = _solver(scene)
+        none = np.zeros((2, len(times)))
+        growth = 0.0 if envelope is None else float(scene.numerical_observable())
+        return _dataset(times, (growth * times, none[0]), none, "deterministic")
+    if envelope is not None and method == "deterministic":
+        raise SceneError("the method 'deterministic' has no parameter 'envelope'; leave it out")
+    solve = _solver(scene) if envelope is None else None
     if method == "deterministic" and solve is None:
         raise SceneError(
             f"v(tau) is solved for one or two state variables and, for two, a finite n, not for "
@@ -99,7 +105,7 @@ def variance(
             pass
     if method == "monte_carlo" or solve is None:
         method, accuracy = "monte_carlo", MONTE_CARLO.tolerance if tol is None else tol
-        attempt = partial(sampled_moments, scene, times, accuracy, seed, threads)
+        attempt = partial(sampled_moments, scene, times, accuracy, seed, threads, envelope=envelope)
     else:
         method = "deterministic"
         accuracy = tuning.VARIANCE.tolerance[scene.dimension - 1] if tol is None else tol

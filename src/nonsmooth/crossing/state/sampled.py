@@ -76,7 +76,8 @@ def sampled_state_crossing(
             return found
         if step is None:
             worst = np.max(np.abs(bias) + error)
-            own_step = refined_step(own_step, worst, tol - share, tuning.SAMPLED.order)
+            refined = refined_step(own_step, worst, tol - share, tuning.SAMPLED.order)
+            own_step = max(refined, own_step / tuning.SAMPLED.finer)
         if not enough:
             own_paths = max(own_paths, paths_wanted(counts, own_paths, tol))
         label = seed

@@ -69,7 +69,10 @@ class Sampled:
     # chosen: largest step of rough paths, as the square of a part of the way to the nearer level
     part_of_way: float = 0.5
     least_tolerance: float = 1e-3  # chosen: paths replace a solver that fails, within minutes
-    attempts: int = 4  # chosen: samples, each with the paths and the step that the last asked for
+    attempts: int = 10  # chosen: samples, each with the paths and the step that the last asked for
+    # chosen: largest factor by which the step falls in one of them. The bias of a long step tells
+    # little about short ones; all samples together then cost 4/3 of the last
+    finer: float = 4.0
 
 
 LINE = Line()

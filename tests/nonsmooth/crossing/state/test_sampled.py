@@ -1,11 +1,15 @@
 """Crossings of the state by Monte Carlo, against solved probabilities and other questions."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy import special, stats
 
 import nonsmooth as ns
+from nonsmooth.crossing.state import sampled
 from nonsmooth.errors import SceneError
+from nonsmooth.paths.absorption.survival import crossed
 from references import FALSE_ALARM, FRICTION, OBSTACLE
 
 HORIZONS = np.array([1.0, 3.0, 10.0])
@@ -56,6 +60,29 @@ def test_tolerance_is_met():
             FRICTION, "y", 0.7, HORIZONS, method="monte_carlo", tol=tol
         )
         assert np.max(np.abs(run["probability"] - exact)) < tol
+
+
+def test_the_bias_of_a_long_step_does_not_decide(monkeypatch):
+    """Stiff stops: the step falls by at most four at a time, and the tolerance is met.
+
+    Taken for proportional to the step, the bias of the first one would ask for a tenth of it.
+    """
+    steps = []
+
+    def counted(*arguments):
+        steps.append(arguments[4].step)
+        return crossed(*arguments)
+
+    monkeypatch.setattr(sampled, "crossed", counted)
+    scene = ns.Scene("obstacle", ns.White(0.6), damping=0.1, potential="x**2/2")
+    loose, fine = (
+        ns.state_crossing_probability(scene, "x", 1.375, [40.0], **options).isel(horizon=0)
+        for options in ({"tol": 1.5e-2}, {"step": 0.0125, "paths": 20_000})
+    )
+    assert abs(loose["probability"] - fine["probability"]) < 1.5e-2 + fine["probability_error"]
+    assert len(steps) > 2
+    assert all(after >= before / 4 for before, after in pairwise(steps[:-1]))
+    assert steps[-2] > steps[0] / 10
 
 
 def test_free_motion_of_a_linear_oscillator():
