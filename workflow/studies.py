@@ -59,10 +59,14 @@ class Studies:
     def wanted(self, targets: Iterable[str]) -> list[str]:
         """Return the names of the studies that snakemake's arguments ask for."""
         targets = set(targets)
-        if "studies" in targets:
-            return self.names
         parts = {part for target in targets for part in Path(target).parts}
-        return [name for name in self.names if {name, f"study_{name}"} & parts]
+
+        def named(rule):  # of a module, whose rules may have a prefix
+            return any(target == rule or target.endswith(f"_{rule}") for target in targets)
+
+        if named("studies"):
+            return self.names
+        return [name for name in self.names if name in parts or named(f"study_{name}")]
 
     def check(self, targets: Iterable[str]) -> None:
         """Refuse studies that some targets ask for and that cannot be computed.

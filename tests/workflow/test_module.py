@@ -37,6 +37,11 @@ rule report:
         "ls {{input}} > {{output}}"
 """
 CROSSING = {"scene": {"n": 50}, "outputs": 10}
+STUDY = {
+    "title": "Mine",
+    "base": {"model": "friction"},
+    "questions": {"spread": {"ask": "asymptotic_variance"}},
+}
 JOBS = ("tables/table_1", "crossing/asymptotic")
 
 
@@ -47,7 +52,8 @@ def foreign(tmp_path_factory):
     (folder / "workflow").mkdir()
     (folder / "workflow" / "Snakefile").write_text(SNAKEFILE)
     (folder / "config").mkdir()
-    mine = {"vibration": {"crossing": CROSSING, "outputs": {"results": "found"}}}
+    mine = {"crossing": CROSSING, "outputs": {"results": "found"}, "studies": {"mine": STUDY}}
+    mine = {"vibration": mine}
     (folder / "config" / "mine.yaml").write_text(yaml.safe_dump(mine))
     return folder
 
@@ -82,10 +88,15 @@ def test_its_results_are_made_in_the_other_folder(foreign):
 
 @pytest.mark.slow
 def test_all_of_it_can_be_asked_for(foreign):
-    """Every job of the paper is found, with the sources of this repository as inputs."""
-    run = snakemake(foreign, "--dry-run", "nonsmooth_all")
+    """Every job of the paper is found, with the sources of this repository, and of a study."""
+    run = snakemake(foreign, "--dry-run", "nonsmooth_all", "nonsmooth_study_mine")
     assert run.returncode == 0, run.stderr[-2000:]
     assert "nonsmooth_paper" in run.stdout + run.stderr
+    assert "vibration/found/studies/mine/report.html" in run.stdout + run.stderr
     run = snakemake(foreign, "--config", "vibration={seed: -3}", "--dry-run")
     assert run.returncode != 0
     assert "'seed'" in run.stderr
+    wrong = "vibration={studies: {mine: {questions: {W: {ask: mean}}}}}"
+    run = snakemake(foreign, "--config", wrong, "--dry-run", "nonsmooth_study_mine")
+    assert run.returncode != 0
+    assert "studies.mine" in run.stderr
