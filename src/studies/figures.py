@@ -70,6 +70,7 @@ def _curves(data, name):
         label = level(curve, several) if first else None
         axis.plot(over, curve[name], color=color, marker="o", markersize=3, label=label)
     axis.set_xlim(0, None)
+    axis.set_title(data[name].attrs["long_name"], fontsize=8)
     axis.set_ylabel(
         f"{name.replace('_', ' ')}, {in_figures(data[name].attrs['units'])}".rstrip(", ")
     )

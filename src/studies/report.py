@@ -85,9 +85,12 @@ def _system(parameters, study):
         structure = structure_of(parameters)
         laws = equations.of_structure(structure, scene.n)
         derived = [
-            ("unit of length L", f"{units.scales.length:.4g} m"),
-            ("unit of time T", f"{units.scales.time:.4g} s"),
-            ("unit of force", f"{units.scales.force:.4g} N"),
+            (f"unit of {name}", f"{float(f'{value:.4g}'):g} {unit}")  # 40000, not 4e+04
+            for name, value, unit in (
+                ("length L", units.scales.length, "m"),
+                ("time T", units.scales.time, "s"),
+                ("force", units.scales.force, "N"),
+            )
         ]
     else:
         laws = []

@@ -17,6 +17,7 @@ from reproduction.errors import ConfigError
 # powers of the base quantities, as in {"length": 1, "time": -1} for a velocity
 Powers = Mapping[str, int]
 BASE = {"length": "m", "time": "s", "force": "N"}
+LONGEST_ERROR = 6  # decimals of an error that is not written with a power of ten
 # what a text may be: a number and a unit of letters, digits and signs
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([\w\s/*^().%µ·²³-]*)")
 
@@ -175,7 +176,8 @@ def spelt(
     unit : str
         As the CF conventions have it.
     limits : (float, float)
-        Between which it is; they are spelt where the error is infinite.
+        Between which it is; they are spelt where the error is infinite, and the upper one where
+        the value and the lower one are 0, as of what no path has crossed.
 
     Returns
     -------
@@ -188,18 +190,34 @@ def spelt(
         if math.isinf(limits[1]):
             return "unknown" if math.isinf(limits[0]) else f"≥ {low}"
         return f"≤ {high}" if math.isinf(limits[0]) else f"{limits[0]:.3g} to {high}"
+    if value == limits[0] == 0 < limits[1] < math.inf:
+        return f"≤ {_rounded(limits[1])}{tail}"
     if error == 0:
         return f"{value:.6g}{tail}" + (" (exact)" if value == 0 else "")
     decimals = 1 - math.floor(math.log10(error))
     size = max(abs(value), error)
     if 1e-3 <= size < 1e5:
         decimals = max(decimals, 0)
-        return f"{value:.{decimals}f} ± {error:.{decimals}f}{tail}"
+        # no -0, and no row of zeros
+        value = round(value, decimals) + 0.0
+        small = f"{error:.{decimals}f}" if decimals <= LONGEST_ERROR else _rounded(error)
+        return f"{value:.{decimals}f} ± {small}{tail}"
     exponent = math.floor(math.log10(size))
     digits = max(decimals + exponent, 0)
     scale = 10.0**exponent
-    power = str(exponent).translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
-    return f"({value / scale:.{digits}f} ± {error / scale:.{digits}f})·10{power}{tail}"
+    return f"({value / scale:.{digits}f} ± {error / scale:.{digits}f}){_power(exponent)}{tail}"
+
+
+def _power(exponent):
+    return "·10" + str(exponent).translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
+
+
+def _rounded(number):
+    """Spell a positive number to two digits."""
+    exponent = math.floor(math.log10(number))
+    if exponent >= -3:
+        return f"{number:.2g}"
+    return f"{number / 10.0**exponent:.1f}{_power(exponent)}"
 
 
 def told(value: Any) -> str:

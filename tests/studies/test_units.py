@@ -72,6 +72,8 @@ def test_dimensionless_numbers_stay():
     [
         (201.93, 2.61, "201.9 ± 2.6 mm² s⁻¹"),
         (0.0, 0.0, "0 mm² s⁻¹ (exact)"),
+        (0.137696412899501, 1.7e-14, "0.137696412899501 ± 1.7·10⁻¹⁴ mm² s⁻¹"),
+        (-3e-5, 1.2e-3, "0.0000 ± 0.0012 mm² s⁻¹"),
         (3.14159e-7, 2.2e-9, "(3.142 ± 0.022)·10⁻⁷ mm² s⁻¹"),
         (12.0, 130.0, "12 ± 130 mm² s⁻¹"),
     ],
@@ -93,6 +95,13 @@ def test_is_spelt_to_two_digits_of_its_error(value, error, text):
 def test_without_an_error_the_limits_are_spelt(limits, text):
     """As for the index of what no path has crossed."""
     assert spelt(math.inf, math.inf, "s", limits) == text
+
+
+def test_what_no_path_has_crossed_has_an_upper_limit():
+    """A probability of 0 with the limits 0 and 6e-4."""
+    assert spelt(0.0, 3e-4, limits=(0.0, 6.2e-4)) == "≤ 6.2·10⁻⁴"
+    assert spelt(0.0, 3e-3, limits=(0.0, 6.2e-3)) == "≤ 0.0062"
+    assert spelt(0.0, 3e-4, limits=(-3e-4, 3e-4)) == "(0.0 ± 3.0)·10⁻⁴"
 
 
 def test_a_formula_of_time():

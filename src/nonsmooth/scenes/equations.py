@@ -51,6 +51,7 @@ _MARKUP = {  # of what sympy's printer for MathML does not know
     "<mi>zetadot</mi>": "<mover><mi>ζ</mi><mo>˙</mo></mover>",
     r"<mi>\\varphi'</mi>": "<mi>φ′</mi>",
     "<mo>-</mo>": "<mo>−</mo>",
+    "<mo><</mo>": "<mo>&lt;</mo>",
 }
 
 

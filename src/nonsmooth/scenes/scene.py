@@ -394,13 +394,24 @@ class Scene:
             self.mechanics, self.noise, self.potential_expression, self.damping
         )
         force = equations.PENALTY_FORCE(self.mechanics.argument)
-        if math.isfinite(self.n):
-            own = equations.plain(self._with_numbers(self.mechanics.penalty_force))
+        if (own := self._force()) is not None:
             lines.append(sympy.Eq(force, own, evaluate=False))
         if self.potential_expression != 0:
             lines.append(potential)
         g = force if self.observes_penalty_force else self.observable_expression
         return [*lines, sympy.Eq(sympy.Symbol("g"), g, evaluate=False)]
+
+    def _force(self):
+        """Return the penalty force as a formula, or its limit; None if that is not known."""
+        model = self.mechanics
+        if math.isfinite(self.n):
+            return equations.plain(self._with_numbers(model.penalty_force))
+        if model.is_dry_friction:
+            return sympy.sign(symbols.y)
+        if not model.confines_displacement:
+            return None
+        inside = sympy.Abs(x) < sympy.nsimplify(model.wall)
+        return sympy.Piecewise((0, inside), (sympy.Symbol("reaction"), True))
 
     def _title(self):
         """Say in words what the equations leave out."""
