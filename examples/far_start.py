@@ -12,7 +12,7 @@ import numpy as np
 
 import nonsmooth as ns
 
-horizons = np.linspace(0.3, 6, 20)
+horizons = np.linspace(0.5, 6, 12)
 ahead = (-np.inf, 1.0)
 start = {f"from y = {y:g}": ns.Scene("friction", start={"y": y}) for y in (0.0, 1.5, 3.0)}
 found = {
@@ -22,7 +22,7 @@ panel = ns.plot(found)["probability"]
 panel.set(ylim=(0, 1), ylabel="probability of having been ahead by 1")
 
 counted = ns.crossing_probability(
-    start["from y = 3"], ahead, horizons[3::4], step=0.01, paths=4000, seed=1
+    start["from y = 3"], ahead, horizons[2::3], step=0.01, paths=4000, seed=1
 )
 band = counted["probability"] - counted["lower"], counted["upper"] - counted["probability"]
 panel.errorbar(counted["horizon"], counted["probability"], band, fmt="k.")
