@@ -67,8 +67,8 @@ publish: env ## make results/, of a full run, what verify compares with
 # on an idle machine
 diagrams: env ## measure speed against error anew, and refresh the copies in docs/
 	$(BIN)/python -m workflow.unlock
-	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_gamma2 measure_pathwise measure_cost -- speed_against_error
-	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf docs/
+	$(BIN)/snakemake --cores 1 --forcerun measure_pde measure_monte_carlo measure_crossing measure_rare measure_gamma2 measure_pathwise measure_cost -- speed_against_error
+	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf results/figures/speed_rare.png docs/
 
 # uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute.
 # Bytecode is made here: a hundred jobs import the same packages, and may not be allowed to keep it

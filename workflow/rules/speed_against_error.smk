@@ -55,6 +55,21 @@ rule measure_crossing:
         "../scripts/speed_against_error/crossing.py"
 
 
+rule measure_rare:
+    """Measure methods for rare crossings"""
+    input:
+        peers=PEERS,
+    output:
+        "<results>/speed_against_error/rare.nc",
+    threads: workflow.cores
+    params:
+        **SPEED["rare"],
+        rounds=SPEED["rounds"],
+        python=PEERS_PYTHON,
+    script:
+        "../scripts/speed_against_error/rare.py"
+
+
 rule measure_gamma2:
     """Measure gamma^2 of every scene"""
     input:
