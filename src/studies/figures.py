@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator
 
 from nonsmooth.plotting.style import BLACK, BLUE, GREEN, ORANGE, SKY
 from studies.questions import Question
-from studies.units import in_figures, pretty
+from studies.units import in_figures, pretty, readable
 
 COLORS = [BLUE, ORANGE, GREEN, SKY, BLACK]
 WIDTH, HEIGHT = 4.6, 2.5
@@ -70,7 +70,7 @@ def _curves(data, name):
         label = level(curve, several) if first else None
         axis.plot(over, curve[name], color=color, marker="o", markersize=3, label=label)
     axis.set_xlim(0, None)
-    axis.set_title(data[name].attrs["long_name"], fontsize=8)
+    axis.set_title(readable(data[name].attrs["long_name"]), fontsize=8)
     axis.set_ylabel(
         f"{name.replace('_', ' ')}, {in_figures(data[name].attrs['units'])}".rstrip(", ")
     )
@@ -208,7 +208,7 @@ def maps(
             continue
         image = axis.pcolormesh(
             range(len(axes[across])), range(len(axes[up])), panels[k],
-            norm=norm, cmap="viridis", shading="nearest", **limits,
+            norm=norm, cmap="viridis", shading="nearest", rasterized=True, **limits,
         )  # fmt: skip
         axis.grid(False)
         told = ", ".join(f"{name} = {value}" for name, value in zip(rest, points[k], strict=True))
@@ -225,8 +225,10 @@ def _ticks(grid, axes, names):
             positions = np.unique(np.linspace(0, len(axes[name]) - 1, 6).round().astype(int))
             texts = [str(axes[name][k]) for k in positions]
             set_ticks(positions, texts, fontsize=7)
-    for axis in grid[-1]:
-        axis.set_xlabel(names[0].replace("_", " "))
+    for column in grid.T:
+        lowest = [axis for axis in column if axis.get_visible()][-1]
+        lowest.set_xlabel(names[0].replace("_", " "))
+        lowest.tick_params(labelbottom=True)
     for row in grid:
         row[0].set_ylabel(names[1].replace("_", " "))
 

@@ -23,7 +23,7 @@ from studies.questions import QUESTIONS
 from studies.scenes import is_structure, scene_of, structure_of
 from studies.study import Study
 from studies.surveys import seconds_of, survey
-from studies.units import pretty, spelt, told
+from studies.units import pretty, readable, spelt, told
 
 _SYMBOLS = {"friction": "$F_s$", "elasto_plastic": "$F_y$", "obstacle": "$d$"}
 
@@ -141,7 +141,7 @@ def _numbers(data, asked):
     """Spell values without dimensions, each with its error."""
     return [
         (
-            data[name].attrs["long_name"].replace("gamma^2", "γ²"),
+            readable(data[name].attrs["long_name"]),
             spelt(
                 float(data[name]),
                 float(data[f"{name}_error"]),

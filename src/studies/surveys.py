@@ -13,7 +13,7 @@ from studies.answers import joined
 from studies.questions import QUESTIONS
 from studies.scenes import QUANTITIES
 from studies.study import Study
-from studies.units import in_figures, in_si, pretty, spelt, told
+from studies.units import in_figures, in_si, pretty, readable, spelt, told
 
 SHOWN = 12  # scenes up to which all of them are tabled
 
@@ -82,7 +82,7 @@ def _relative(value, error):
 
 
 def _map(study, variable, values):
-    title = variable.attrs["long_name"]
+    title = readable(variable.attrs["long_name"])
     for dim in variable.dims[1:]:
         title += f", at {dim} = {figures.level(values, dim, pretty)}"
     label = f"{variable.name.replace('_', ' ')}, {in_figures(variable.attrs['units'])}".rstrip(", ")

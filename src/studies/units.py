@@ -194,22 +194,25 @@ def spelt(
         return f"≤ {_rounded(limits[1])}{tail}"
     if error == 0:
         return f"{value:.6g}{tail}" + (" (exact)" if value == 0 else "")
-    decimals = 1 - math.floor(math.log10(error))
     size = max(abs(value), error)
-    if 1e-3 <= size < 1e5:
-        decimals = max(decimals, 0)
-        # no -0, and no row of zeros
-        value = round(value, decimals) + 0.0
-        small = f"{error:.{decimals}f}" if decimals <= LONGEST_ERROR else _rounded(error)
-        return f"{value:.{decimals}f} ± {small}{tail}"
-    exponent = math.floor(math.log10(size))
-    digits = max(decimals + exponent, 0)
-    scale = 10.0**exponent
-    return f"({value / scale:.{digits}f} ± {error / scale:.{digits}f}){_power(exponent)}{tail}"
+    exponent = 0 if 1e-3 <= size < 1e5 else math.floor(math.log10(size))
+    power, scale = _power(exponent), 10.0**exponent
+    digits = max(1 - math.floor(math.log10(error)) + exponent, 0)
+    number = f"{round(value / scale, digits) + 0.0:.{digits}f}"  # no -0
+    if digits > LONGEST_ERROR:
+        return f"{number}{power} ± {_rounded(error)}{tail}"
+    spread = f"{error / scale:.{digits}f}"
+    return (f"({number} ± {spread}){power}" if power else f"{number} ± {spread}") + tail
+
+
+def readable(text: str) -> str:
+    """Write the formulas of a long name as they are read."""
+    return text.replace("gamma^2", "γ²")
 
 
 def _power(exponent):
-    return "·10" + str(exponent).translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
+    digits = str(exponent).translate(str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"))
+    return f"·10{digits}" if exponent else ""
 
 
 def _rounded(number):

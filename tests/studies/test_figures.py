@@ -31,6 +31,19 @@ def test_every_value_is_in_its_place(count):
     plt.close(figure)
 
 
+def test_every_column_has_its_values_below():
+    """Also where the last row has fewer maps."""
+    axes = {"a": list(range(5)), "b": list(range(6)), "c": list(range(7))}
+    numbers = {name: list(range(len(values))) for name, values in axes.items()}
+    figure = maps(np.arange(210.0), axes, "value", numbers)
+    figure.draw_without_rendering()
+    seen = [axis for axis in figure.axes if axis.get_visible() and axis.get_xlabel()]
+    assert len(seen) == 4
+    for axis in seen:
+        assert any(text.get_visible() and text.get_text() for text in axis.get_xticklabels())
+    plt.close(figure)
+
+
 def test_one_parameter_is_a_line():
     """Value against parameter."""
     figure = maps(np.array([1.0, 2.0]), {"n": [1, 2]}, "value", {"n": [1.0, 2.0]})
