@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
+from threadpoolctl import threadpool_limits
+
 Found = TypeVar("Found")
 Answer = TypeVar("Answer")
 
@@ -56,6 +58,9 @@ def answered(
 ) -> Answer:
     """Solve and present what is found, also if it misses the tolerance.
 
+    Meanwhile dense linear algebra has one thread. Its threads wait actively for each other, which
+    takes many times as long where something else runs, and their number changes the last digits.
+
     Parameters
     ----------
     solve : callable
@@ -77,7 +82,8 @@ def answered(
         If the tolerance was asked for, or nothing is known, or the memory is too small.
     """
     try:
-        return present(solve())
+        with threadpool_limits(limits=1, user_api="blas"):
+            return present(solve())
     except MemoryError:
         raise ToleranceError(
             "the memory does not hold what this takes; choose fewer paths or times or a larger "

@@ -1,6 +1,7 @@
 """Refusals keep what they have; without a tolerance it is returned with a warning."""
 
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import nonsmooth as ns
 from nonsmooth.errors import (
@@ -44,6 +45,18 @@ def test_nothing_known_is_an_error_also_without_a_tolerance():
     """There is nothing to return."""
     with pytest.raises(ToleranceError):
         answered(refusal(None), str, tol_given=False)
+
+
+def test_meanwhile_dense_linear_algebra_has_one_thread():
+    """And as many as before afterwards."""
+
+    def threads():
+        found = threadpool_info()
+        return {pool["num_threads"] for pool in found if pool["user_api"] == "blas"}
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        assert answered(threads, set) == {1}
+        assert threads() == {2}
 
 
 @pytest.mark.parametrize(("results", "best"), [([3, 1, 2], 1), ([None, 2], 2), ([None], None)])

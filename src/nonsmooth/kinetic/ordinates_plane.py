@@ -3,7 +3,7 @@
 For an odd drift and an odd g, functions are odd or even in the state, and half of the grid is
 enough. Nodes with g != 0 are said to move. There are fewer elements than `grids.mesh` makes,
 because adding and doubling costs the cube of the number of nodes that move; they are graded to
-where g = 0.
+where g = 0. Nodes that paths hardly visit, as in the corners of the box, are eliminated.
 """
 
 import math
@@ -140,16 +140,30 @@ def plane_ordinates(
     row, half = start_row(scene, axes), len(g)
     start = {parity: row[:half] + parity * row[half:][::-1] for parity in (ODD, EVEN)}
     weights = _weights(solve, start[EVEN], time)
-    moving = _moving(weights * np.abs(g), level.dropped)
-    order = np.append(moving, np.delete(np.arange(half), moving))
-    generator = {parity: solve.matrix(parity)[order][:, order].tocsc() for parity in (ODD, EVEN)}
+    moving = _carriers(weights * np.abs(g), level.dropped)
+    visited = _carriers(weights, tuning.PLANE_ORDINATES.rare)
+    order = np.append(moving, np.setdiff1d(visited, moving))
+    balanced = {p: _balanced(solve.matrix(p), start[p], order) for p in (ODD, EVEN)}
     return PlaneOrdinates(
         g[moving],
         weights[moving],
-        np.ones(half),
+        np.ones(len(order)),
         math.sqrt(weights @ g**2 / weights.sum()) / scene.damping,
-        generator,
-        {p: start[p][order] for p in (ODD, EVEN)},
+        {p: balanced[p][0] for p in (ODD, EVEN)},
+        {p: balanced[p][1] for p in (ODD, EVEN)},
+    )
+
+
+def _balanced(generator, row, kept):
+    """Eliminate the nodes that are hardly visited, as if they were in balance: A h = 0 there.
+
+    Constants stay what they are, and so does a generator that does not amplify.
+    """
+    rare = np.setdiff1d(np.arange(len(row)), kept)
+    to_rare, of_rare = generator[kept][:, rare], generator[rare]
+    values = -spla.splu(of_rare[:, rare].tocsc()).solve(of_rare[:, kept].toarray())
+    return (generator[kept][:, kept] + sp.csr_array(to_rare @ values)).tocsc(), (
+        row[kept] + row[rare] @ values
     )
 
 
@@ -160,10 +174,10 @@ def _weights(solve, start, time):
     return np.abs(2 * solve.fold(solve.stationary())) + np.abs(visited)
 
 
-def _moving(flow, dropped):
-    """Find the nodes that carry the flow, but for a small part of it."""
-    order = np.argsort(flow)
-    return np.sort(order[np.cumsum(flow[order]) > dropped * flow.sum()])
+def _carriers(amounts, dropped):
+    """Find the nodes that carry the sum of what is at all nodes, but for a small part of it."""
+    order = np.argsort(amounts)
+    return np.sort(order[np.cumsum(amounts[order]) > dropped * amounts.sum()])
 
 
 def _axes(scene, ends, level, time):
