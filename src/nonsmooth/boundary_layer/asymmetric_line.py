@@ -12,7 +12,7 @@ import scipy.linalg
 
 from nonsmooth.boundary_layer import tuning
 from nonsmooth.boundary_layer.constants import LayerConstants
-from nonsmooth.errors import SceneError, ToleranceError, quoted
+from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic.ordinates_line import Ordinates, ordinates
 from nonsmooth.line import quadrature
@@ -46,16 +46,13 @@ def layer_constants(
 
     Raises
     ------
-    SceneError
-        If the stationary mean of g is not 0.
     ToleranceError
         If `tol` is not met; the message has the best values and their error.
     """
     tol = tuning.LINE.accuracy if tol is None else tol
-    mean = quadrature.mean(scene)[0]
     found = until_agreement(
         tuning.LINE.degrees,
-        lambda degree: _on_degree(scene, degree, mean),
+        lambda degree: _on_degree(scene, degree),
         lambda levels: levels[-1].distance(levels[-2]),
         lambda _, errors: errors.largest() <= tol,
     )
@@ -126,15 +123,15 @@ def _at_threshold(grid: Ordinates, g: np.ndarray, modes: _Modes, side: int) -> t
     return solution[0], (means * np.abs(modes.inverses))[decaying] @ solution[1:]
 
 
-def _on_degree(scene: Scene, degree: int, mean: float) -> LayerConstants:
-    """Solve both Milne problems on elements of one degree; `mean` is E g."""
+def mean(scene: Scene) -> float:
+    """Return E g of a scene to which this `applies`; 0 if it is rounding."""
+    value, grid = quadrature.mean(scene)[0], ordinates(scene, tuning.LINE.degrees[0])
+    return value if abs(value) > tuning.LINE.centred * np.sqrt(grid.masses @ grid.g**2) else 0.0
+
+
+def _on_degree(scene: Scene, degree: int) -> LayerConstants:
+    """Solve both Milne problems on elements of one degree."""
     grid = ordinates(scene, degree)
-    spread = np.sqrt(grid.masses @ grid.g**2)
-    if abs(mean) > tuning.LINE.centred * spread:
-        raise SceneError(
-            f"the extrapolation length needs E g = 0, but g = {quoted(scene.observable)} has "
-            f"the mean {mean:.10g}; subtract it from g"
-        )
     # subtract what the quadrature leaves of the mean
     g = grid.g - np.where(grid.g == 0, 0.0, grid.masses @ grid.g)
     modes = _modes(grid, g)

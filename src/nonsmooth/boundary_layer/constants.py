@@ -38,6 +38,8 @@ class LayerConstants:
         odd g.
     r : float or None
         Value at the start of r, A r = D u + C - g h.
+    mean : float
+        E g. The other constants are those of g - E g.
     """
 
     diffusion: float
@@ -49,11 +51,12 @@ class LayerConstants:
     h: float | None = None
     kappa3: float | None = None
     r: float | None = None
+    mean: float = 0.0
 
     @property
     def order(self) -> int:
         """The highest order of the corrected formula for which the known constants suffice."""
-        if self.dispersion is None:
+        if self.dispersion is None or self.mean != 0:
             return 1
         return 2 if self.kappa3 is None else 3
 

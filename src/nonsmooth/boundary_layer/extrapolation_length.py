@@ -5,7 +5,7 @@ import time
 from nonsmooth.boundary_layer.milne import solved_constants
 from nonsmooth.boundary_layer.sampled import sampled_kappa
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import answered
+from nonsmooth.errors import SceneError, answered, quoted
 from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene, require_random
 
@@ -60,6 +60,11 @@ def extrapolation_length(
     def present(found):
         if isinstance(found, Estimate):
             return found
+        if found[0].mean != 0:
+            raise SceneError(
+                f"the extrapolation length needs E g = 0, but g = {quoted(scene.observable)} has "
+                f"the mean {found[0].mean:.10g}; subtract it from g"
+            )
         kappa, error = (numbers.kappa[SIDES.index(side)] for numbers in found)
         method = "discrete ordinates" if scene.is_line else "tensor grids"
         return Estimate(kappa, error, method, time.perf_counter() - began)

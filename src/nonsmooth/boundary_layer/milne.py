@@ -1,5 +1,6 @@
 """The constants of a scene's boundary layer, by the best method that applies."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 from nonsmooth.boundary_layer import asymmetric_line, symmetric_line, two_variables
@@ -36,10 +37,14 @@ def solved_constants(
     Raises
     ------
     SceneError
-        If g is not centred, or gamma^2 is 0.
+        If gamma^2 is 0, or g of two variables is not centred.
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
+    if asymmetric_line.applies(scene) and (mean := asymmetric_line.mean(scene)):
+        centred = scene.with_observable(f"{scene.observable} - ({mean!r})")
+        if (solved := solved_constants(centred, tol)) is not None:
+            return replace(solved[0], mean=mean), solved[1]
     for method in (symmetric_line, asymmetric_line, two_variables):
         if method.applies(scene):
             return method.layer_constants(scene, tol)

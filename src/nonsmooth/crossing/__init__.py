@@ -10,7 +10,7 @@ or by counting paths. The manual has the derivations and the choice of the metho
 - `brownian`: `brownian_crossing`, `brownian_survival`, `brownian_first_passage_density`,
   `brownian_exit`, `brownian_exit_density`, and the asymptotic formula, `asymptotic_crossing`.
 - `corrected_formula.corrected_crossing`: corrected formulas with their errors, from the
-  distribution functions of `expansion` and the mean over the clock of `random_clock`.
+  distribution functions of `expansion`, the mean over the clock of `random_clock`, and `drift`.
 - `first_passage.distribution.deterministic_crossing`: the deterministic method.
 - `monte_carlo.sampled_crossing`: Monte Carlo to a tolerance, from the counts of `counting` and the
   intervals of `proportions`.

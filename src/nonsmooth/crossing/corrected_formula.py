@@ -16,6 +16,8 @@ threshold, (m/b) exp(-b/m) is added to R for the layer's effect at the start. Wh
 thick that order 1 replaces the others, R grows with m/b instead. R never exceeds a limit that
 grows with log(1 + 2 m/b). The numbers a and c are fitted, see `tuning`.
 
+With a drift, order 1 has the error W (exp(X) - 1) besides, see `drift`.
+
 Large excursions of a g that grows faster than the theorems allow make early crossings likelier than
 the formula says. For such a g, of which the scene warns, nothing is known but that a probability is
 between 0 and 1, and the error says so.
@@ -74,20 +76,25 @@ def corrected_crossing(
     Raises
     ------
     SceneError
-        If the scene has no such formula.
+        If the scene has no such formula, or E g != 0 and the order is not 1.
     ToleranceError
         If an error is above `tol`; with the values and errors as its `result`.
     """
     _require_order(scene, order)
     with of_another_quantity():
         constants, errors = layer_constants(scene, seed, threads, accuracy)
+    if order > 1 and constants.mean != 0:
+        raise SceneError(
+            f"the corrected formula of order {order} needs E g = 0, but g = "
+            f"{quoted(scene.observable)} has the mean {constants.mean:.10g}; use order=1"
+        )
     times = p * np.asarray(horizons, dtype=float)
     formula = Expansion(constants, *(np.sqrt(p) * level for level in threshold))
-    if formula.moved_lower < 0 < formula.moved_upper:
+    if formula.says_something:
         found = formula.orders(times)
         value = found[order - 1]
         error = np.abs(found[-1] - value) + _error_of_last(formula, errors, times, found[-1])
-    else:  # the start, moved by u, is beyond a moved threshold: the formula says nothing
+    else:
         value, error = np.ones(times.shape), np.ones(times.shape)
     if scene.grows_too_fast:  # single excursions may cross at any time
         error = np.maximum(error, np.maximum(value, 1 - value))
@@ -125,6 +132,7 @@ def _error_of_last(
     change = np.minimum(change, least + more * np.log1p(2 * formula.knudsen))
     error = np.full(times.shape, tuning.CORRECTED_ERROR.rounding)
     error += np.max([np.abs(formula.last(times * np.exp(s * change)) - last) for s in (-1, 1)], 0)
+    error += _next_order_of_drift(formula, times, last)
     plain = formula.first(times)
     for moved in _moved_by_errors(formula.constants, errors):
         error += np.abs(replace(formula, constants=moved).first(times) - plain)
@@ -147,6 +155,19 @@ def _next_order(formula, times):
     # where the layer is thick, order 1 replaces the others
     first_order = (1 - formula.weight) * tuning.CORRECTED_ERROR.thick * knudsen * thick
     return formula.weight * next_order + first_order / (1 + thick)
+
+
+def _next_order_of_drift(formula, times, last):
+    """Bound what a drift changes in the order 2: weights are multiplied by exp(X) at most.
+
+    With the minimum q of Lambda, relative changes of q, of Lambda and of kappa are of the order
+    (q m)^2, m being the thickness of the layer. X is so much of the exponents that have them.
+    """
+    tilt, nearer = formula.tilt, min(formula.upper, -formula.lower)
+    exponents = 1 + abs(tilt.exponent) * nearer - tilt.rate * times
+    relative = (tilt.exponent * formula.layer_thickness) ** 2
+    change = tuning.CORRECTED_ERROR.drift * relative * exponents
+    return last * np.expm1(np.minimum(change, 1.0))
 
 
 def _inherited(formula, errors, times):

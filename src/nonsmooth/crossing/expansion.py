@@ -7,6 +7,7 @@ the derivation. In short, with the constants of `boundary_layer.constants`:
   farther out than the scene's, and the start is moved to the right by u. Without symmetry the
   passage of the upper threshold is C / (2 D^2) times its distance earlier, and that of the lower
   one later.
+  With E g != 0, only order 1 is known, and each passage is weighted (`drift`).
 - Order 2 is the mean of these probabilities over a random clock (`random_clock`) of the spread
   beta = B/D^2 - 5 C^2 / (4 D^3); passages are (S + B/D - h + u^2/2) / D later. If beta is negative,
   there is no such clock. Then the time is multiplied by the exponential of beta times the
@@ -22,13 +23,13 @@ layer and b the distance to the nearer threshold. Besides, order 2 of odd g is k
 far from order 3 as order 1 is. All these changes are smaller than the error of the order.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from nonsmooth.boundary_layer.constants import LayerConstants
-from nonsmooth.crossing import tuning
+from nonsmooth.crossing import drift, tuning
 from nonsmooth.crossing.brownian import (
     brownian_crossing,
     brownian_exit,
@@ -66,6 +67,17 @@ class Expansion:
         """Lower threshold of Brownian motion, from where it starts."""
         return self.lower - self.constants.kappa[0] - self.constants.u
 
+    @property
+    def says_something(self) -> bool:
+        """Whether the moved start is between the moved thresholds, and the drift not too large."""
+        if not self.moved_lower < 0 < self.moved_upper:
+            return False
+        return np.isfinite(self.tilt.diffusion) and not any(
+            -self.tilt.exponent * end > tuning.DRIFT.largest
+            for end in (self.moved_lower, self.moved_upper)
+            if np.isfinite(end)
+        )
+
     @cached_property
     def layer_thickness(self) -> float:
         """Thickness m of the layer; the effects of dispersion and skewness are part of it."""
@@ -82,6 +94,11 @@ class Expansion:
         dipole = max(abs(c.dipole[0]), abs(c.dipole[1]))
         dispersion, skewness = self._memory()
         return np.sqrt(dipole + abs(c.h - c.u**2 / 2) + dispersion + skewness)
+
+    @cached_property
+    def tilt(self) -> drift.Tilt:
+        """How the drift is taken away."""
+        return drift.tilt(self.constants)
 
     @property
     def knudsen(self) -> float:
@@ -125,7 +142,7 @@ class Expansion:
         D = self.constants.diffusion
         late = self._either().slopes(times)[1]
         early = min(self.moved_upper, -self.moved_lower) ** 2 / (4 * D * times**2)
-        return 1 / times + np.maximum(np.abs(late), early)
+        return 1 / times + np.maximum(np.abs(late), early) - self.tilt.rate
 
     def _memory(self):
         """Return the squared displacements of the dispersion and of the skewness."""
@@ -141,6 +158,8 @@ class Expansion:
     def _order(self, order, times):
         """Evaluate an order alone."""
         c = self.constants
+        if c.mean != 0:
+            return self._drifting(times)
         D = c.diffusion
         spread = (c.dispersion / D - 5 / 4 * (c.skewness / D) ** 2) / D if order > 1 else 0.0
         total = np.zeros(times.shape)
@@ -159,6 +178,20 @@ class Expansion:
                 return passage.crossed(clock * np.exp(exponent))
 
             total += averaged(crossed, reached, max(spread, 0.0))
+        return np.clip(total, 0.0, 1.0)
+
+    def _drifting(self, times):
+        """Evaluate order 1 with a drift; see `drift`."""
+        tilt = self.tilt
+        still = replace(self.constants, mean=0.0, diffusion=tilt.diffusion)
+        total = np.zeros(times.shape)
+        for passage in replace(self, constants=still)._sides():
+            level = passage.upper if passage.side == UPPER else passage.lower
+
+            def passed(at, passage=passage):
+                return passage.crossed(np.maximum(at + passage.lead, 0.0))
+
+            total += tilt.passed(passed, level, times)
         return np.clip(total, 0.0, 1.0)
 
     def _exponent(self, order, passage, spread, clock):
@@ -187,6 +220,12 @@ class Expansion:
         dipoles = (None, None) if c.dipole is None else c.dipole
         if c.skewness == 0 and dipoles[0] == dipoles[1]:
             return [self._either()]
+        return self._sides()
+
+    def _sides(self):
+        """Return the passages of each threshold before the other."""
+        c = self.constants
+        dipoles = (None, None) if c.dipole is None else c.dipole
         lead = c.skewness / (2 * c.diffusion**2)
         return [
             BrownianPassage(

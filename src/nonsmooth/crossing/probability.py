@@ -99,7 +99,8 @@ def crossing_probability(
           It does not depend on p; its error does.
         - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
           order 1/p, p^(-3/2) or p^(-2). For the state y with white noise it has the orders 1 and
-          2, and 3 if g is odd; elsewhere it needs odd g and has the order 1.
+          2, and 3 if g is odd; order 1 also if E g != 0, as with a small slope. Elsewhere it
+          needs odd g and has the order 1.
     tol : float, optional
         Absolute error wanted. Unless given, it is 1e-2 for ``"monte_carlo"``, and 1e-7 for
         ``"deterministic"`` or 1e-4 with two variables; for ``"importance_sampling"`` a tenth of

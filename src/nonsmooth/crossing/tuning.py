@@ -95,6 +95,15 @@ class Orders:
 
 
 @dataclass(frozen=True)
+class Drift:
+    """Brownian motion with a drift, in the corrected formula of order 1."""
+
+    nodes: int = 100  # chosen: of Gauss, on the logarithm of the time
+    deepest: float = 700.0  # derived: before, the passage has a probability below exp(-700), ...
+    largest: float = 700.0  # derived: ... and a weight above exp(700) overflows
+
+
+@dataclass(frozen=True)
 class CorrectedError:
     """The stated error of the corrected formula, see `corrected_formula`."""
 
@@ -105,6 +114,7 @@ class CorrectedError:
     thick: float = 1.3
     # R is at most the first number plus the second times log(1 + 2 m / b); fitted: as above
     longest: tuple[float, float] = (1.5, 2.0)
+    drift: float = 2.0  # factor of X; fitted: errors of a hundred scenes of one variable
     rounding: float = 1e-15  # of every value; derived: some units in the last place of 1
 
 
@@ -166,6 +176,7 @@ LIMIT_ERROR = LimitError()
 BROWNIAN_SERIES = BrownianSeries()
 RANDOM_CLOCK = RandomClock()
 ORDERS = Orders()
+DRIFT = Drift()
 CORRECTED_ERROR = CorrectedError()
 COUNTING = Counting()
 WEIGHTS = Weights()
