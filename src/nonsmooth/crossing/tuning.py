@@ -114,7 +114,7 @@ class CorrectedError:
     thick: float = 1.3
     # R is at most the first number plus the second times log(1 + 2 m / b); fitted: as above
     longest: tuple[float, float] = (1.5, 2.0)
-    drift: float = 2.0  # factor of X; fitted: errors of a hundred scenes of one variable
+    drift: float = 2.0  # factor of X; fitted: errors of forty random scenes of one variable
     rounding: float = 1e-15  # of every value; derived: some units in the last place of 1
 
 
