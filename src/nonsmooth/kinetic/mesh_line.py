@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nonsmooth.errors import ToleranceError
+from nonsmooth.errors import ToleranceError, quoted
 from nonsmooth.grids.grading import distinct
 from nonsmooth.kinetic import tuning
 from nonsmooth.line.kinks import isolated_zeros, sign_changes, switches
@@ -44,7 +44,8 @@ def element_edges(
     Raises
     ------
     ToleranceError
-        If double precision does not hold the density beyond the start.
+        If double precision does not hold the density beyond the start, or too many elements would
+        be needed.
     """
     settings, start = tuning.LINE_ORDINATES, scene.start.get("y", 0.0)
     end, scale = _extent(scene, time, reach, deepest)
@@ -138,6 +139,11 @@ class _Widths:
                 np.where(at_right & ~at_left, 1 - settings.cut, 0.5),
             )
             edges = np.sort(np.append(edges, left + part * (right - left)))
+            if len(edges) > settings.most:
+                raise ToleranceError(
+                    f"g = {quoted(self.scene.observable)} grows so fast that more than "
+                    f"{settings.most} elements are needed; use method='monte_carlo'"
+                )
 
     def _is_singular(self, left, right, end):
         return np.min(np.abs(end[:, None] - self.singular), axis=1) < 1e-9 * (right - left)

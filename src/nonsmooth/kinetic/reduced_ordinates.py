@@ -107,8 +107,10 @@ def _modes(even, odd):
     """
     fast, fast_modes = _ascending(odd @ even, 1)
     slow, slow_modes = _ascending(np.linalg.solve(even, np.linalg.inv(odd)), -1)
-    agree = np.abs(slow / fast - 1) < tuning.REDUCED_ORDINATES.agree
-    gaps = np.where(agree[1:] & agree[:-1], np.abs(fast[1:] / fast[:-1]), 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):  # what is not a number does not agree
+        agree = np.abs(slow / fast - 1) < tuning.REDUCED_ORDINATES.agree
+        ratios = np.abs(fast[1:] / fast[:-1])
+    gaps = np.where(agree[1:] & agree[:-1], ratios, 0.0)
     cut = 1 + int(np.argmax(gaps))
     squares = np.append(slow[:cut], fast[cut:])
     return np.sqrt(squares), np.hstack([slow_modes[:, :cut], fast_modes[:, cut:]])

@@ -27,6 +27,7 @@ class LineOrdinates:
     shrink: float = 0.98  # chosen: factor by which the axis is shortened until it ends at `deepest`
     probed: int = 4001  # chosen: points of the sums that give the spread of the velocity
     searched: int = 501  # chosen: points between which sign changes of g are looked for
+    most: int = 400  # chosen: number of elements; dense matrices of more take minutes at each z
     cut: float = 0.3  # chosen: place at which an element is cut whose one end is a zero of g
 
 
