@@ -29,13 +29,15 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     SceneError
-        If it is no such dataset.
+        If it is no such dataset, or an empty one.
     """
     if not isinstance(crossing, xr.Dataset) or not set(_NEEDED) <= set(crossing.data_vars):
         raise SceneError(
             f"crossing is {quoted(crossing)}; give what crossing_probability has returned"
         )
     W, error, lower, upper = (crossing[name] for name in _NEEDED)
+    if not W.size:
+        raise SceneError("crossing has no probabilities; give what crossing_probability returned")
     # near W = 1 the complement has more digits
     survival = crossing.get("survival", 1 - W)
     beta = xr.where(W < 0.5, -ndtri(W), ndtri(survival))

@@ -45,3 +45,6 @@ def test_what_is_no_crossing_probability_is_refused():
     """The error is one line with the cure."""
     with pytest.raises(SceneError, match="crossing_probability has returned"):
         ns.reliability_index(0.1)
+    names = "probability", "probability_error", "lower", "upper"
+    with pytest.raises(SceneError, match="has no probabilities"):
+        ns.reliability_index(xr.Dataset({name: ("horizon", []) for name in names}))

@@ -34,17 +34,18 @@ def scales(envelope: str, began: float, step: float, count: int) -> np.ndarray:
     ExpressionError
         If the formula cannot be read.
     SceneError
-        If it is negative or not finite at some time.
+        If it, or its square, is negative or not finite at some time.
     """
     function = vectorised(parse(envelope, (_TIME,)), (_TIME,))
     times = began + step * (np.arange(count)[:, None] + 0.5 + _POINTS)
     with np.errstate(all="ignore"):
         values = np.broadcast_to(function(times), times.shape)
-    wrong = ~(np.isfinite(values) & (values >= 0))
+        squares = values**2
+    wrong = ~(np.isfinite(squares) & (values >= 0))
     if np.any(wrong):
         at = times[wrong][0]
         raise SceneError(
             f"envelope = {quoted(envelope)} is {values[wrong][0]:g} at t = {at:.3g}; give a "
-            "formula that is finite and not negative"
+            "formula that is moderate and not negative"
         )
-    return np.sqrt(values**2 @ _WEIGHTS)
+    return np.sqrt(squares @ _WEIGHTS)

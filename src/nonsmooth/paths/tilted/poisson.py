@@ -12,6 +12,7 @@ import numpy as np
 
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.paths import tuning
+from nonsmooth.paths.ensembles import require_finite
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
 from nonsmooth.paths.schemes import registry
@@ -39,7 +40,7 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     Raises
     ------
     SceneError
-        If int g does not spread like a Brownian motion.
+        If int g does not spread like a Brownian motion, or paths diverge.
     ToleranceError
         If this takes too many steps.
     """
@@ -79,6 +80,7 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
             martingales.append(martingale.T)
             gains.append(panel.total[TOTAL_DELTA, :BLOCK] - began[TOTAL_DELTA])
     x, gain = np.concatenate(columns), np.concatenate(gains)
+    require_finite(x)
     if not scene.is_odd():
         x = np.column_stack([x, np.ones(len(x))])
     size = np.maximum(np.sqrt(np.mean(x**2, axis=0)), np.finfo(float).tiny)

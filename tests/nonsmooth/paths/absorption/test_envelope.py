@@ -24,5 +24,7 @@ def test_refusals():
     """What is negative, infinite or no formula of t."""
     with pytest.raises(SceneError, match="envelope = '1 - t' is -0"):
         scales("1 - t", 0.0, 0.1, 20)
+    with pytest.raises(SceneError, match="give a formula that is moderate"):
+        scales("exp(1e3*t)", 0.0, 0.1, 5)  # its square overflows
     with pytest.raises(ExpressionError):
         scales("x", 0.0, 0.1, 20)

@@ -36,3 +36,10 @@ def test_refuses_what_does_not_spread():
     scene = ns.Scene("obstacle", potential="x**2/2", observable="y")
     with pytest.raises(SceneError, match="does not spread"):
         poisson.fitted(scene, 0.05, 1)
+
+
+def test_refuses_paths_that_diverge():
+    """As from a potential that is not confining."""
+    scene = ns.Scene("obstacle", potential="-1e3*x**2", observable="x")
+    with pytest.raises(SceneError, match="the simulation diverged"):
+        poisson.fitted(scene, 0.05, 1)
