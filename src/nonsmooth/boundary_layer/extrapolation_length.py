@@ -2,12 +2,12 @@
 
 import time
 
-from nonsmooth.boundary_layer.milne import solved_constants
+from nonsmooth.boundary_layer.milne import mean_of_line, solved_constants
 from nonsmooth.boundary_layer.sampled import sampled_kappa
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import SceneError, answered, quoted
+from nonsmooth.errors import answered
 from nonsmooth.estimate import Estimate
-from nonsmooth.scenes.scene import Scene, require_random
+from nonsmooth.scenes.scene import Scene, require_random, uncentred
 
 SIDES = ("lower", "upper")
 
@@ -54,17 +54,14 @@ def extrapolation_length(
     seed, threads = require_seed(seed), require_threads(threads)
 
     def solve():
+        if (mean := mean_of_line(scene)) != 0:
+            raise uncentred("the extrapolation length", scene, mean)
         solved = solved_constants(scene.with_start({}), tol)  # kappa does not depend on the start
         return sampled_kappa(scene, tol, seed, threads) if solved is None else solved
 
     def present(found):
         if isinstance(found, Estimate):
             return found
-        if found[0].mean != 0:
-            raise SceneError(
-                f"the extrapolation length needs E g = 0, but g = {quoted(scene.observable)} has "
-                f"the mean {found[0].mean:.10g}; subtract it from g"
-            )
         kappa, error = (numbers.kappa[SIDES.index(side)] for numbers in found)
         method = "discrete ordinates" if scene.is_line else "tensor grids"
         return Estimate(kappa, error, method, time.perf_counter() - began)

@@ -41,14 +41,20 @@ def solved_constants(
     ToleranceError
         If `tol` is not met; the message has the best value and its error.
     """
-    if asymmetric_line.applies(scene) and (mean := asymmetric_line.mean(scene)):
-        centred = scene.with_observable(f"{scene.observable} - ({mean!r})")
-        if (solved := solved_constants(centred, tol)) is not None:
-            return replace(solved[0], mean=mean), solved[1]
+    mean = mean_of_line(scene)
+    if mean != 0:
+        scene = scene.with_observable(f"{scene.observable} - ({mean!r})")
     for method in (symmetric_line, asymmetric_line, two_variables):
         if method.applies(scene):
-            return method.layer_constants(scene, tol)
+            constants, errors = method.layer_constants(scene, tol)
+            return replace(constants, mean=mean), errors
     return None
+
+
+def mean_of_line(scene: Scene) -> float:
+    """Return E g for one variable, 0 if it is rounding; 0 for other scenes."""
+    # it does not depend on the start
+    return asymmetric_line.mean(scene.with_start({})) if asymmetric_line.applies(scene) else 0.0
 
 
 @lru_cache(maxsize=16)  # the constants serve every p and every interval

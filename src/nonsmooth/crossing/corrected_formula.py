@@ -33,7 +33,7 @@ from nonsmooth.boundary_layer.milne import highest_order, layer_constants
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.expansion import Expansion
 from nonsmooth.errors import SceneError, ToleranceError, of_another_quantity, quoted
-from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.scene import Scene, uncentred
 
 
 def corrected_crossing(
@@ -84,10 +84,8 @@ def corrected_crossing(
     with of_another_quantity():
         constants, errors = layer_constants(scene, seed, threads, accuracy)
     if order > 1 and constants.mean != 0:
-        raise SceneError(
-            f"the corrected formula of order {order} needs E g = 0, but g = "
-            f"{quoted(scene.observable)} has the mean {constants.mean:.10g}; use order=1"
-        )
+        what = f"the corrected formula of order {order}"
+        raise uncentred(what, scene, constants.mean, "use order=1")
     times = p * np.asarray(horizons, dtype=float)
     formula = Expansion(constants, *(np.sqrt(p) * level for level in threshold))
     if formula.says_something:

@@ -10,11 +10,14 @@ counts exp(Lambda(q) t - q a).
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.crossing import tuning
+
+_gauss = cache(np.polynomial.legendre.leggauss)
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,7 @@ class Tilt:
         """
         settings = tuning.DRIFT
         first = np.minimum(level**2 / (4 * self.diffusion * settings.deepest), times)
-        nodes, weights = np.polynomial.legendre.leggauss(settings.nodes)
+        nodes, weights = _gauss(settings.nodes)
         width = np.log(times / first)[:, None]
         at = first[:, None] * np.exp(width * (nodes + 1) / 2)
         shrunk = np.exp(self.rate * at - self.exponent * level) * still(at)

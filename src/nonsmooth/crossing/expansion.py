@@ -153,6 +153,8 @@ class Expansion:
     def _mixed(self, order, times):
         """Evaluate an order, mixed with order 1 where the layer is thick."""
         first = self._order(1, times)
+        if order == 1:
+            return first
         return first + self.weight * (self._order(order, times) - first)
 
     def _order(self, order, times):

@@ -45,7 +45,7 @@ from nonsmooth.errors import (
 )
 from nonsmooth.paths.sampling import PRECISIONS
 from nonsmooth.paths.tuning import MONTE_CARLO
-from nonsmooth.scenes.scene import Scene, require_random
+from nonsmooth.scenes.scene import Scene, require_random, uncentred
 from nonsmooth.scenes.thresholds import intervals
 from nonsmooth.statistics.asymptotic_variance import limit_variance
 from nonsmooth.statistics.mean import mean
@@ -298,10 +298,7 @@ def _require_centred(scene, gamma2, found):
     uncertainties = centred.uncertainties if found.method == "Monte Carlo" else 1.0
     least = max(centred.relative * np.sqrt(gamma2.value), uncertainties * found.error)
     if abs(found.value) > least:
-        raise SceneError(
-            f"the asymptotic formula needs E g = 0, but g = {quoted(scene.observable)} has "
-            f"the mean {found.value:.10g}; subtract it from g"
-        )
+        raise uncentred("the asymptotic formula", scene, found.value)
 
 
 def _sampled(

@@ -495,6 +495,13 @@ def require_velocity(scene: Scene, cure: str) -> None:
         )
 
 
+def uncentred(what: str, scene: Scene, mean: float, cure: str = "subtract it from g") -> SceneError:
+    """Make the error of a formula that needs E g = 0."""
+    return SceneError(
+        f"{what} needs E g = 0, but g = {quoted(scene.observable)} has the mean {mean:.10g}; {cure}"
+    )
+
+
 def require_random(scene: object) -> None:
     """Refuse what is no scene, and a scene whose g is constant, so that it has no state."""
     require_scene(scene)
