@@ -17,7 +17,7 @@ from scipy.linalg import lu_factor, lu_solve
 
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
-from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, UnstableError
 
 
 @dataclass(frozen=True)
@@ -106,6 +106,11 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
     numpy.ndarray, shape (k, m)
         h at many depths, on the nodes with g > 0 or their mirror images; depths crowd at the faces.
         Once a slab is opaque, it stands for thicker ones.
+
+    Raises
+    ------
+    UnstableError
+        If h is not between 0 and 1, even roughly.
     """
     settings, ones = tuning.ADDING_DOUBLING, grid.ones[: len(grid.speeds)]
     made = []
@@ -128,7 +133,10 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
             parts.append((size - 1, below, down))
             if size > len(made) - settings.resolved:
                 parts.append((size - 1, up, above))
-    return np.array(found).T
+    field = np.array(found).T
+    if not np.max(np.abs(field)) < settings.unstable:
+        raise UnstableError(f"slabs amplify: a transform of {np.max(np.abs(field)):.2g}")
+    return field
 
 
 def _step(scattering, speeds, thickness):

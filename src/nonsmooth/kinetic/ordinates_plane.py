@@ -3,7 +3,7 @@
 For an odd drift and an odd g, functions are odd or even in the state, and half of the grid is
 enough. Nodes with g != 0 are said to move. There are fewer elements than `grids.mesh` makes,
 because adding and doubling costs the cube of the number of nodes that move; they are graded to
-where g = 0. Nodes that paths hardly visit, as in the corners of the box, are eliminated.
+where g = 0.
 """
 
 import math
@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+import sympy
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.direct_solver import DirectSolver
-from nonsmooth.grids.elements import continuous, discontinuous
+from nonsmooth.grids.elements import Axis, continuous, discontinuous
 from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.grading import distinct, graded, mirrored
 from nonsmooth.grids.mesh.axes import variables
@@ -24,6 +25,10 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import around_start, fitted
 from nonsmooth.kinetic import tuning
 from nonsmooth.scenes.scene import Scene
+
+
+class UnstableError(Exception):
+    """A grid whose generator is far from dissipative, so that solutions grow."""
 
 
 @dataclass(frozen=True)
@@ -134,36 +139,21 @@ def plane_ordinates(
     -------
     PlaneOrdinates
     """
-    axes = _axes(scene, ends, level, time)
-    solve = DirectSolver(scene, axes, True)
-    g = solve.fold(evaluate(scene.numerical_observable(), axes))
-    row, half = start_row(scene, axes), len(g)
+    made = axes(scene, ends, level, time)
+    solve = DirectSolver(scene, made, True)
+    g = solve.fold(evaluate(scene.numerical_observable(), made))
+    row, half = start_row(scene, made), len(g)
     start = {parity: row[:half] + parity * row[half:][::-1] for parity in (ODD, EVEN)}
     weights = _weights(solve, start[EVEN], time)
     moving = _carriers(weights * np.abs(g), level.dropped)
-    visited = _carriers(weights, tuning.PLANE_ORDINATES.rare)
-    order = np.append(moving, np.setdiff1d(visited, moving))
-    balanced = {p: _balanced(solve.matrix(p), start[p], order) for p in (ODD, EVEN)}
+    order = np.append(moving, np.setdiff1d(np.arange(half), moving))
     return PlaneOrdinates(
         g[moving],
         weights[moving],
         np.ones(len(order)),
         math.sqrt(weights @ g**2 / weights.sum()) / scene.damping,
-        {p: balanced[p][0] for p in (ODD, EVEN)},
-        {p: balanced[p][1] for p in (ODD, EVEN)},
-    )
-
-
-def _balanced(generator, row, kept):
-    """Eliminate the nodes that are hardly visited, as if they were in balance: A h = 0 there.
-
-    Constants stay what they are, and so does a generator that does not amplify.
-    """
-    rare = np.setdiff1d(np.arange(len(row)), kept)
-    to_rare, of_rare = generator[kept][:, rare], generator[rare]
-    values = -spla.splu(of_rare[:, rare].tocsc()).solve(of_rare[:, kept].toarray())
-    return (generator[kept][:, kept] + sp.csr_array(to_rare @ values)).tocsc(), (
-        row[kept] + row[rare] @ values
+        {p: solve.matrix(p)[order][:, order].tocsc() for p in (ODD, EVEN)},
+        {p: start[p][order] for p in (ODD, EVEN)},
     )
 
 
@@ -180,7 +170,21 @@ def _carriers(amounts, dropped):
     return np.sort(order[np.cumsum(amounts[order]) > dropped * amounts.sum()])
 
 
-def _axes(scene, ends, level, time):
+def axes(
+    scene: Scene, ends: dict, level: tuning.PlaneLevel, time: float
+) -> dict[sympy.Symbol, Axis]:
+    """Make the axes of a tensor grid: no node is its own mirror image.
+
+    Parameters
+    ----------
+    scene, ends, level, time
+        As for `plane_ordinates`.
+
+    Returns
+    -------
+    dict
+        From symbols to axes.
+    """
     made = {}
     for symbol in variables(scene):
         end = ends[symbol]

@@ -71,8 +71,6 @@ class PlaneOrdinates:
     depth: float = 14.0  # derived: outside the box the density is exp(-14) = 8e-7 of its maximum
     coarsest: float = 9.0  # chosen: the half axis over the finest element, if noise drives g, ...
     fast: float = 1.5  # chosen: ... which is at most so many sigma sqrt(t)
-    rare: float = 1e-8  # chosen: share of the mass at nodes that are taken to be in balance; less
-    #                     than outside of the box
     outer: float = 0.4  # chosen: an edge in the outermost element, over the end of the axis
     before_wall: tuple[float, ...] = (0.5, 0.85)  # chosen: edges over the place of the wall
     in_wall: tuple[float, ...] = (0.125, 0.35)  # chosen: edges inside a wall, over its depth
@@ -109,6 +107,7 @@ class AddingDoubling:
     """Slabs that are put together."""
 
     fewest: int = 6  # chosen: doublings, at least
+    unstable: float = 2.0  # chosen: a transform, which is at most 1, that is far off
     opaque: float = 1e-4  # chosen: transmission of a slab that is as good as a half space
     resolved: int = 4  # chosen: how often a slab is halved everywhere, not only at its faces
 

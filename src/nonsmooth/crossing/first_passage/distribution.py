@@ -19,9 +19,10 @@ from nonsmooth.crossing.first_passage.problem import (
     FirstPassageProblem,
     LaplaceProblem,
 )
-from nonsmooth.crossing.first_passage.time_stepping import UnstableError, stepped
+from nonsmooth.crossing.first_passage.time_stepping import stepped
 from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.kinetic import tail_descent
+from nonsmooth.kinetic.ordinates_plane import UnstableError
 from nonsmooth.line.potential import depth
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.scene import Scene
@@ -129,10 +130,13 @@ def _one_in_plane(scene, lower, upper, times, tol):
     if early.any():
         try:
             found.append(part_by_part(early, tuning.STEPPED_PARTS, stepped))
-        except UnstableError:  # slabs are stable on every grid
+        except UnstableError:  # slabs are stable on more grids
             early = times < 0
     if not early.all():
-        found.append(part_by_part(~early, tuning.PLANE_PARTS, inverted))
+        try:
+            found.append(part_by_part(~early, tuning.PLANE_PARTS, inverted))
+        except UnstableError as unstable:
+            raise ToleranceError(f"{unstable}; use method='monte_carlo'") from None
     solution, error = (np.hstack(parts) for parts in zip(*found, strict=True))
     return _answer(PlaneProblem(scene, lower, upper, times), times, solution, error, tol)
 

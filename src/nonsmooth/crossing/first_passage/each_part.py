@@ -13,6 +13,7 @@ import numpy as np
 
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import Part
+from nonsmooth.kinetic.ordinates_plane import UnstableError
 from nonsmooth.progress import counter
 
 
@@ -46,11 +47,17 @@ def refine_each_part(
     met : callable
         Whether a result is accurate enough.
     tol : float
-        Absolute error wanted, to which the parts may contribute about equally.
+        Absolute error wanted.
 
     Returns
     -------
     Found
+        The last before a grid is unstable.
+
+    Raises
+    ------
+    UnstableError
+        If the first one is.
     """
     with counter("solutions") as advance:
 
@@ -66,27 +73,43 @@ def refine_each_part(
 def _refined(parts, solution, met, tol):
     """Refine with solutions that are not computed twice."""
     settings = tuning.EACH_PART
-    at = tuple(part.first for part in parts)
-    before = np.zeros(len(parts))[:, None, None]
+    loose = sum(tol >= limit for limit in settings.loose)
+    at = tuple(part.first - min(part.coarser, loose) for part in parts)
+    # the changes of finer parts are added: what remains is the change of their changes
+    finer = np.array([part.step > 0 for part in parts])
+    counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
+    before, found = np.zeros(len(parts))[:, None, None], None
     while True:
-        base = solution(at)
-        changes = np.array(
-            [solution(_stepped(at, k, part.step)) - base for k, part in enumerate(parts)]
-        )
-        # the changes of finer parts are added: what remains is the change of their changes
-        finer = np.array([part.step > 0 for part in parts])
-        counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
+        try:
+            base = solution(at)
+            changes = np.array(
+                [solution(_stepped(at, k, part.step)) - base for k, part in enumerate(parts)]
+            )
+        except UnstableError:
+            if found is None:
+                raise
+            return found
         sizes = np.maximum(counted * np.abs(changes), settings.kept * before)
         found = Found(base + changes[finer].sum(axis=0), sizes.sum(axis=0))
         if met(found):
             return found
-        open_ = [at[k] < part.last for k, part in enumerate(parts)]
-        worst = np.where(open_, sizes.max(axis=(1, 2)), 0.0)
-        chosen = worst >= min(worst.max(), settings.share * tol)
-        if not worst.max() > 0:
+        open_ = np.array([at[k] < part.last for k, part in enumerate(parts)])
+        chosen = _to_refine(np.where(open_, sizes.max(axis=(1, 2)), 0.0), sizes, tol)
+        if not chosen.any():
             return found
-        at = tuple(n + int(c and o) for n, c, o in zip(at, chosen, open_, strict=True))
+        at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
         before = np.where(chosen[:, None, None], sizes, settings.kept * before)
+
+
+def _to_refine(worst, sizes, tol):
+    """Choose the worst parts: as few as should do, for the others need not be computed again."""
+    chosen = np.zeros(len(worst), dtype=bool)
+    left = sizes.copy()
+    for k in np.argsort(-worst):
+        if worst[k] > 0 and left.sum(axis=0).max() > tuning.EACH_PART.enough * tol:
+            left[k] *= tuning.EACH_PART.expected
+            chosen[k] = True
+    return chosen
 
 
 def _stepped(at, k, step):

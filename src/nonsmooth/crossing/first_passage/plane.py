@@ -13,6 +13,7 @@ from nonsmooth.crossing.first_passage.problem import (
 )
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.adding_doubling import fields
+from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
 from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates, reduced
@@ -103,9 +104,29 @@ class PlaneProblem(LaplaceProblem):
                 )
             else:
                 level = levels.plane(driven, other)
-                time = min(self._times[0], 1 / self.scene.damping)
-                self._grids[key] = plane_ordinates(self.scene, self._ends, level, time)
+                self._grids[key] = plane_ordinates(self.scene, self._ends, level, self._early)
         return self._grids[key]
+
+    def tensor_grid(self, driven: int, other: int) -> TensorOrdinates:
+        """Make a grid for steps in time, unless there is one in Hermite polynomials.
+
+        Parameters
+        ----------
+        driven, other : int
+            As for `grid`.
+        """
+        level = tuning.STEPPED_GRIDS.plane(driven, other)
+        return tensor_ordinates(self.scene, self._ends, level, self._early)
+
+    @property
+    def way(self) -> float:
+        """How far int g goes within a relaxation time."""
+        return self.grid(0, 0).way
+
+    @property
+    def _early(self):
+        """The shortest time of interest."""
+        return min(self._times[0], 1 / self.scene.damping)
 
     def ordinates(self, driven: int, other: int, basis: int) -> ReducedOrdinates:
         """Reduce a grid.
@@ -126,10 +147,8 @@ class PlaneProblem(LaplaceProblem):
 
     def _fields(self, driven, other, basis):
         """Solutions in the slab for the z of a basis."""
-        settings = tuning.BASES[basis]
-        return {
-            z: self._field(driven, other, z, settings.thin) for z in self._shifts(settings.spacing)
-        }
+        thin = tuning.BASES[basis].thin
+        return {z: self._field(driven, other, z, thin) for z in self._shifts(basis)}
 
     def _field(self, driven, other, z, thin):
         """Solutions in the slab for a real z."""
@@ -139,12 +158,14 @@ class PlaneProblem(LaplaceProblem):
             self._known[key] = fields(grid, z, self.upper - self.lower, thin * grid.way)
         return self._known[key]
 
-    def _shifts(self, spacing):
-        """Real z, of the sizes of the inverse times, on a lattice that all requests share."""
-        settings, scale = tuning.SLABS, spacing * tuning.SLABS.lattice
-        first = math.floor(math.log(settings.least / self._times[-1] / self.scene.damping) / scale)
-        last = math.ceil(math.log(settings.largest / self._times[0] / self.scene.damping) / scale)
-        return self.scene.damping * np.exp(scale * np.arange(first, last + 1))
+    def _shifts(self, refined):
+        """Real z, of the sizes of the inverse times; of a basis that is `refined` so many times."""
+        settings = tuning.SLABS
+        ends = settings.least / self._times[-1], settings.largest / self._times[0]
+        parts = 1
+        while math.log10(ends[1] / ends[0]) > settings.widest * parts:
+            parts *= 2
+        return np.geomspace(*ends, parts * 2**refined + 1)
 
 
 def inverted(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.ndarray]:

@@ -81,11 +81,14 @@ class Part:
         Resolution to begin with, and the finest.
     step : {1, -1}
         Whether it is compared with the next finer resolution, or with the next coarser one.
+    coarser : int
+        By how much the resolution to begin with may be coarser, for a loose tolerance.
     """
 
     first: int
     last: int
     step: int
+    coarser: int = 0
 
 
 @dataclass(frozen=True)

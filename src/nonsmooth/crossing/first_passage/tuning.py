@@ -159,7 +159,11 @@ class EachPart:
     kept: float = 0.1  # chosen: a change counts at least so much of the one before
     # chosen: a change to a coarser resolution counts so much; that to a finer one is smaller
     coarser: float = 0.5
-    share: float = 0.2  # chosen: share of the tolerance from which a part is refined
+    # chosen: parts are refined until the error should be so much of the tolerance, ...
+    enough: float = 0.8
+    expected: float = 0.3  # chosen: ... if the change of a refined part falls to so much
+    # chosen: tolerances from which a resolution is begun with that is coarser by one, and by two
+    loose: tuple[float, ...] = (1e-3, 1e-2)
 
 
 @dataclass(frozen=True)
@@ -171,23 +175,20 @@ class Slabs:
     shortest: float = 1e-6  # chosen: least mean duration in relaxation times, above rounding
     exponents: tuple[float, ...] = (0.5, 1.0, 2.0)  # chosen: z t at which W is bounded ...
     coarse: float = 1e-6  # chosen: ... with F on a coarse grid, whose error is far below this
-    lattice: float = 0.575646  # derived: a quarter of a decade, log(10) / 4
+    widest: float = 4.0  # chosen: largest distance of these z in decades, for the first basis
 
 
 class Basis(NamedTuple):
-    """How a grid is reduced.
+    """How a grid is reduced; each has solutions at twice as many real z as the one before.
 
     Attributes
     ----------
-    spacing : int
-        Of the z at which solutions are found, in quarters of a decade.
     accuracy : float
         Relative size of what is left out.
     thin : float
         Thickness of the first slab, relative to the way that int g goes in a relaxation time.
     """
 
-    spacing: int
     accuracy: float
     thin: float
 
@@ -196,8 +197,10 @@ class Basis(NamedTuple):
 class PlaneGrids:
     """Grids of two state variables by their resolution."""
 
-    driven: tuple[int, ...] = (5, 6, 7, 9, 11, 13)  # chosen: polynomial degrees
+    driven: tuple[int, ...] = (3, 4, 5, 6, 7, 9, 11, 13)  # chosen: polynomial degrees
     other: tuple[tuple[int, float, float], ...] = (
+        (2, 8.0, 0.05),
+        (3, 8.0, 0.03),
         (4, 8.0, 0.03),
         (5, 8.0, 0.03),
         (6, 8.0, 0.02),
@@ -205,8 +208,10 @@ class PlaneGrids:
         (8, 6.0, 0.01),
         (10, 6.0, 0.01),
     )
-    hermite: tuple[int, ...] = (12, 16, 20, 26, 34, 44)
+    hermite: tuple[int, ...] = (6, 8, 12, 16, 20, 26, 34, 44)
     elements: tuple[tuple[int, tuple[float, ...], tuple[float, ...]], ...] = (
+        (3, (0.3, 1.0), (0.5, 1.0)),
+        (4, (0.3, 1.0), (0.5, 1.0)),
         (5, (0.3, 1.0), (0.5, 1.0)),
         (6, (0.2, 1.0), (0.4, 1.0)),
         (7, (0.15, 0.5, 1.0), (0.3, 1.0)),
@@ -234,6 +239,7 @@ class TimeStepping:
     # chosen: polynomial degree in x; the smallest element over the lesser of the distance to the
     # threshold and of the way that int g goes in a relaxation time; the largest over the distance
     elements: tuple[tuple[int, float, float], ...] = (
+        (2, 4e-2, 0.3),
         (3, 2e-2, 0.25),
         (4, 1e-2, 0.2),
         (5, 5e-3, 0.15),
@@ -263,15 +269,17 @@ SLABS = Slabs()
 EACH_PART = EachPart()
 PLANE_GRIDS = PlaneGrids()
 BASES = (
-    Basis(8, 1e-6, 0.02),
-    Basis(4, 1e-7, 0.02),
-    Basis(2, 1e-8, 0.005),
-    Basis(1, 1e-9, 0.005),
+    Basis(3e-7, 0.04),
+    Basis(1e-8, 0.02),
+    Basis(3e-9, 0.01),
+    Basis(1e-9, 0.005),
+    Basis(1e-9, 0.005),
 )
 TIME_STEPPING = TimeStepping()
 STEPPED_GRIDS = PlaneGrids(
-    driven=(5, 6, 8, 9, 10, 12),
+    driven=(4, 5, 6, 8, 9, 10, 12),
     other=(
+        (2, 3.0, 0.03),
         (3, 3.0, 0.02),
         (4, 3.0, 0.02),
         (5, 3.0, 0.01),
@@ -279,8 +287,9 @@ STEPPED_GRIDS = PlaneGrids(
         (7, 3.0, 0.01),
         (8, 3.0, 0.01),
     ),
-    hermite=(24, 36, 54, 80, 110, 140),
+    hermite=(10, 16, 24, 36, 54, 80, 110),
     elements=(
+        (4, (0.12, 0.4, 1.0), (0.5, 1.0)),
         (5, (0.12, 0.4, 1.0), (0.5, 1.0)),
         (6, (0.12, 0.4, 1.0), (0.5, 1.0)),
         (7, (0.12, 0.4, 1.0), (0.5, 1.0)),
@@ -290,9 +299,9 @@ STEPPED_GRIDS = PlaneGrids(
     ),
 )
 # driven and other variable of the grid, x, time
-STEPPED_PARTS = (Part(1, 2, 1), Part(1, 2, 1), Part(1, 3, 1), Part(0, 3, 1))
+STEPPED_PARTS = (Part(2, 5, 1, 2), Part(2, 5, 1, 2), Part(2, 4, 1, 2), Part(0, 3, 1))
 # driven and other variable of the grid, basis, contour
-PLANE_PARTS = (Part(0, 3, 1), Part(0, 3, 1), Part(1, 3, -1), Part(1, 4, -1))
+PLANE_PARTS = (Part(2, 6, 1, 2), Part(2, 6, 1, 2), Part(1, 4, -1), Part(1, 4, -1))
 
 # The numbers of these records are described at `Settings` and `ContourSettings`. All without a
 # comment are chosen by trial; benchmarks/crossing_honesty.py checks the errors that result.
