@@ -110,7 +110,7 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
     Raises
     ------
     UnstableError
-        If h is not between 0 and 1, even roughly.
+        If h, which is between 0 and 1, is much larger.
     """
     settings, ones = tuning.ADDING_DOUBLING, grid.ones[: len(grid.speeds)]
     made = []
@@ -133,10 +133,11 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
             parts.append((size - 1, below, down))
             if size > len(made) - settings.resolved:
                 parts.append((size - 1, up, above))
-    field = np.array(found).T
-    if not np.max(np.abs(field)) < settings.unstable:
-        raise UnstableError(f"slabs amplify: a transform of {np.max(np.abs(field)):.2g}")
-    return field
+    flow = np.sqrt(grid.masses * np.abs(grid.speeds))
+    size = np.max(np.linalg.norm(flow * found, axis=1)) / np.linalg.norm(flow * ones)
+    if not size < settings.unstable:
+        raise UnstableError(f"the slabs of {len(ones)} ordinates amplify by {size:.2g}")
+    return np.array(found).T
 
 
 def _step(scattering, speeds, thickness):

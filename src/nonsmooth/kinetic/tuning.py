@@ -107,7 +107,8 @@ class AddingDoubling:
     """Slabs that are put together."""
 
     fewest: int = 6  # chosen: doublings, at least
-    unstable: float = 2.0  # chosen: a transform, which is at most 1, that is far off
+    # chosen: size of a transform, which is between 0 and 1, that shows an unstable grid
+    unstable: float = 5.0
     opaque: float = 1e-4  # chosen: transmission of a slab that is as good as a half space
     resolved: int = 4  # chosen: how often a slab is halved everywhere, not only at its faces
 

@@ -52,7 +52,7 @@ def refine_each_part(
     Returns
     -------
     Found
-        The last before a grid is unstable.
+        The last, or the last before a grid is unstable or no longer better.
 
     Raises
     ------
@@ -90,9 +90,11 @@ def _refined(parts, solution, met, tol):
                 raise
             return found
         sizes = np.maximum(counted * np.abs(changes), settings.kept * before)
-        found = Found(base + changes[finer].sum(axis=0), sizes.sum(axis=0))
+        coarser, found = found, Found(base + changes[finer].sum(axis=0), sizes.sum(axis=0))
         if met(found):
             return found
+        if coarser is not None and not found.change.max() < coarser.change.max():
+            return coarser
         open_ = np.array([at[k] < part.last for k, part in enumerate(parts)])
         chosen = _to_refine(np.where(open_, sizes.max(axis=(1, 2)), 0.0), sizes, tol)
         if not chosen.any():

@@ -155,7 +155,9 @@ class PlaneProblem(LaplaceProblem):
         key = driven, other, z, thin
         if key not in self._known:
             grid = self.grid(driven, other)
-            self._known[key] = fields(grid, z, self.upper - self.lower, thin * grid.way)
+            # what int g goes within a relaxation time, or within 1/z if this is shorter
+            way = grid.way / (1 + z / self.scene.damping)
+            self._known[key] = fields(grid, z, self.upper - self.lower, thin * way)
         return self._known[key]
 
     def _shifts(self, refined):
