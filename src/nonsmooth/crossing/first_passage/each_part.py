@@ -2,7 +2,8 @@
 
 Two levels may agree although they are wrong, if both leave the same part coarse. Here each part of
 the resolution is changed by itself. What the solution changes then is the error of this part, and
-the error is the sum over all parts. A part is refined whose error is large.
+the error is the sum over all parts. It counts at least as much of the change before as is usual for
+the part: two resolutions may agree by chance. The parts with the largest errors are refined.
 """
 
 from collections.abc import Callable
@@ -73,43 +74,58 @@ def refine_each_part(
 def _refined(parts, solution, met, tol):
     """Refine with solutions that are not computed twice."""
     settings = tuning.EACH_PART
-    loose = sum(tol >= limit for limit in settings.loose)
-    at = tuple(part.first - min(part.coarser, loose) for part in parts)
+    at = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
     # the changes of finer parts are added: what remains is the change of their changes
     finer = np.array([part.step > 0 for part in parts])
     counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
-    before, found = np.zeros(len(parts))[:, None, None], None
+    falls = np.array([part.falls for part in parts])[:, None, None]
+    floor, found = None, None
     while True:
         try:
             base = solution(at)
             changes = np.array(
                 [solution(_stepped(at, k, part.step)) - base for k, part in enumerate(parts)]
             )
+            if floor is None:
+                floor = falls * _changes_from_coarser(parts, solution, at)
         except UnstableError:
             if found is None:
                 raise
             return found
-        sizes = np.maximum(counted * np.abs(changes), settings.kept * before)
+        sizes = np.maximum(counted * np.abs(changes), floor)
         coarser, found = found, Found(base + changes[finer].sum(axis=0), sizes.sum(axis=0))
         if met(found):
             return found
         if coarser is not None and not found.change.max() < coarser.change.max():
             return coarser
         open_ = np.array([at[k] < part.last for k, part in enumerate(parts)])
-        chosen = _to_refine(np.where(open_, sizes.max(axis=(1, 2)), 0.0), sizes, tol)
+        chosen = _to_refine(np.where(open_, sizes.max(axis=(1, 2)), 0.0), sizes, falls, tol)
         if not chosen.any():
             return found
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
-        before = np.where(chosen[:, None, None], sizes, settings.kept * before)
+        floor = np.where(chosen[:, None, None], falls * sizes, floor)
 
 
-def _to_refine(worst, sizes, tol):
-    """Choose the worst parts: as few as should do, for the others need not be computed again."""
+def _changes_from_coarser(parts, solution, at):
+    """Compute what the parts changed before: two resolutions may agree by chance, three hardly."""
+    base = solution(at)
+    return np.array(
+        [
+            np.abs(base - solution(_stepped(at, k, -1)))
+            if part.step > 0 and at[k] > 0
+            else np.zeros_like(base)
+            for k, part in enumerate(parts)
+        ]
+    )
+
+
+def _to_refine(worst, sizes, falls, tol):
+    """Choose the worst parts, as few as should do."""
     chosen = np.zeros(len(worst), dtype=bool)
     left = sizes.copy()
     for k in np.argsort(-worst):
         if worst[k] > 0 and left.sum(axis=0).max() > tuning.EACH_PART.enough * tol:
-            left[k] *= tuning.EACH_PART.expected
+            left[k] *= falls[k]
             chosen[k] = True
     return chosen
 

@@ -81,14 +81,17 @@ class Part:
         Resolution to begin with, and the finest.
     step : {1, -1}
         Whether it is compared with the next finer resolution, or with the next coarser one.
-    coarser : int
-        By how much the resolution to begin with may be coarser, for a loose tolerance.
+    falls : float
+        What a resolution changes, over what the one before has changed: at least, for an error.
+    coarser : bool
+        Whether it begins with the resolution before `first` for a loose tolerance.
     """
 
     first: int
     last: int
     step: int
-    coarser: int = 0
+    falls: float = 0.1
+    coarser: bool = False
 
 
 @dataclass(frozen=True)

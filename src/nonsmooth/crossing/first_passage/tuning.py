@@ -156,14 +156,10 @@ class FarStart:
 class EachPart:
     """Refinement of one part of a resolution at a time."""
 
-    kept: float = 0.1  # chosen: a change counts at least so much of the one before
     # chosen: a change to a coarser resolution counts so much; that to a finer one is smaller
     coarser: float = 0.5
-    # chosen: parts are refined until the error should be so much of the tolerance, ...
-    enough: float = 0.8
-    expected: float = 0.3  # chosen: ... if the change of a refined part falls to so much
-    # chosen: tolerances from which a resolution is begun with that is coarser by one, and by two
-    loose: tuple[float, ...] = (1e-3, 1e-2)
+    enough: float = 0.8  # chosen: parts are refined until the error should be so much of tol
+    loose: float = 1e-3  # chosen: tolerance from which some parts begin coarser by one
 
 
 @dataclass(frozen=True)
@@ -298,10 +294,15 @@ STEPPED_GRIDS = PlaneGrids(
         (10, (0.12, 0.4, 1.0), (0.5, 1.0)),
     ),
 )
-# driven and other variable of the grid, x, time
-STEPPED_PARTS = (Part(2, 5, 1, 2), Part(2, 5, 1, 2), Part(2, 4, 1, 2), Part(0, 3, 1))
+# driven and other variable of the grid, x, time; degrees of the other variable converge irregularly
+STEPPED_PARTS = (
+    Part(2, 5, 1, 0.05, True),
+    Part(2, 5, 1, 0.3, True),
+    Part(2, 4, 1, 0.1, True),
+    Part(0, 3, 1, 0.25),
+)
 # driven and other variable of the grid, basis, contour
-PLANE_PARTS = (Part(2, 6, 1, 2), Part(2, 6, 1, 2), Part(1, 4, -1), Part(1, 4, -1))
+PLANE_PARTS = (Part(2, 6, 1, 0.05, True), Part(2, 6, 1, 0.3, True), Part(1, 4, -1), Part(1, 4, -1))
 
 # The numbers of these records are described at `Settings` and `ContourSettings`. All without a
 # comment are chosen by trial; benchmarks/crossing_honesty.py checks the errors that result.
