@@ -20,6 +20,7 @@ and doubling of slabs finds. The manual page is
 - `adding_doubling.slabs`, `adding_doubling.fields`: reflection and transmission, and solutions at
   many depths, for two.
 - `reduced_ordinates.reduced`: the basis that they span, and the transform in it.
+- `marching`: the equation in time, by Strang's splitting.
 - `tail_descent.tail`: a start so far in the tails that the modes cancel; the state falls from there
   to a level near the bulk.
 - `tail_equation.equation`: the kinetic equation on the way down, marched in x.

@@ -1,11 +1,14 @@
 """Slabs made by doubling: what they reflect and transmit, and the solutions inside of them."""
 
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 from nonsmooth.kinetic.adding_doubling import fields, slabs
+from nonsmooth.kinetic.ordinates_plane import UnstableError
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from support import coarse_ordinates
 
@@ -31,3 +34,11 @@ def test_fields_in_a_thick_slab_are_those_of_a_half_space():
     thin = 0.02 * grid.way
     thick, half = (fields(grid, 1.0, size, thin) for size in (2**13 * thin, np.inf))
     assert thick[:, 1] == pytest.approx(half[:, 1], abs=2e-4)
+
+
+def test_slabs_that_amplify_are_seen():
+    """A generator that makes functions grow is no result."""
+    grid = coarse_ordinates(COLORED_FRICTION)
+    growing = {p: A + 40 * sp.eye_array(A.shape[0]) for p, A in grid.generator.items()}
+    with pytest.raises(UnstableError, match="amplify by"):
+        fields(replace(grid, generator=growing), 0.1, 4.0, 0.02 * grid.way)

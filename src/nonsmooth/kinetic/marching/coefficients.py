@@ -48,5 +48,5 @@ class CoefficientSteps(SplitStep):
 
     def survival(self) -> float:
         """Return q at x = 0 and the start of the state, after half a transport."""
-        still = (self._still_start[p] @ (self._still[p] @ self._interval.kept) for p in (EVEN, ODD))
+        still = (self._still_start[p] @ (self._still[p] @ self.interval.kept) for p in (EVEN, ODD))
         return super().survival() + sum(still)

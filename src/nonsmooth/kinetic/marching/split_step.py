@@ -63,6 +63,8 @@ class SplitStep(ABC):
 
     Attributes
     ----------
+    there, opposite : numpy.ndarray
+    interval : Interval
     step : float
         Length of a step.
     """
@@ -77,7 +79,7 @@ class SplitStep(ABC):
         step: float,
     ):
         self.step, self.there, self.opposite = step, there, opposite
-        self._interval, self._start = interval, start
+        self.interval, self._start = interval, start
         scale = np.max(np.abs(speeds))
         distinct, which = np.unique(np.round(speeds / scale, _DIGITS), return_inverse=True)
         moving = np.flatnonzero(distinct)
@@ -110,20 +112,20 @@ class SplitStep(ABC):
         seen = self.there[self._seen], self.opposite[self._seen]
         self._transport(*seen, self._seen_rows, self._half)
         return sum(
-            weights @ (values @ self._interval.kept)
+            weights @ (values @ self.interval.kept)
             for weights, values in zip(self._start[:, self._seen], seen, strict=True)
         )
 
     def _flows(self, way):
         """For the nodes; unless the interval is symmetric, also for their mirror images."""
-        flow = self._interval.flow
-        return [flow(way)] if self._interval.symmetric else [flow(way), flow(-way)]
+        flow = self.interval.flow
+        return [flow(way)] if self.interval.symmetric else [flow(way), flow(-way)]
 
     def _transport(self, there, opposite, rows, flows):
         """Move values in place; on a symmetric interval, those opposite are those at x < 0."""
         half = there.shape[1]
         for at, flow in zip(rows, flows, strict=True):
-            if self._interval.symmetric:
+            if self.interval.symmetric:
                 values = np.hstack([opposite[at][:, ::-1], there[at]]) @ flow[0]
                 opposite[at], there[at] = values[:, :half][:, ::-1], values[:, half:]
             else:

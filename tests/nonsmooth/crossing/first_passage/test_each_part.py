@@ -5,6 +5,7 @@ import pytest
 
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.problem import Part
+from nonsmooth.kinetic.ordinates_plane import UnstableError
 
 PARTS = (Part(0, 12, 1), Part(0, 12, 1), Part(1, 12, -1))
 
@@ -58,3 +59,41 @@ class TestRefineEachPart:
             (Part(0, 2, 1),), lambda at: np.array([[(-1.0) ** at[0]], [0.0]]), lambda f: False, 0.1
         )
         assert found.change.max() == 2.0
+
+    def test_three_resolutions_must_agree(self):
+        """Where the second and the third agree by chance, the first one tells."""
+        values = [0.0, 1e-2, 1e-2, 1.2e-2]
+        found = refine_each_part(
+            (Part(1, 2, 1, falls=0.3),),
+            lambda at: np.array([[values[at[0]]], [0.0]]),
+            lambda found: True,
+            1e-2,
+        )
+        assert found.change.max() == pytest.approx(3e-3)
+
+    @pytest.mark.parametrize(("tol", "coarsest"), [(1e-2, 0), (1e-4, 1)])
+    def test_a_loose_tolerance_begins_coarser(self, tol, coarsest):
+        """Nothing below the resolution before it is solved."""
+        asked = []
+
+        def solve(at):
+            asked.append(at[0])
+            return np.zeros((2, 1))
+
+        refine_each_part((Part(2, 4, 1, coarser=True),), solve, lambda found: True, tol)
+        assert min(asked) == coarsest
+
+    def test_what_no_longer_helps_is_left_out(self):
+        """The best result comes back where changes grow, or where finer grids are unstable."""
+        values = [0.0, 1e-2, 5e-2]
+
+        def solve(at):
+            if at[0] == len(values):
+                raise UnstableError("too fine")
+            return np.array([[values[at[0]]], [0.0]])
+
+        for last in (1, 2):
+            found = refine_each_part((Part(0, last, 1),), solve, lambda found: False, 1e-4)
+            assert found.change.max() == 1e-2
+        with pytest.raises(UnstableError, match="too fine"):
+            refine_each_part((Part(2, 3, 1),), solve, lambda found: False, 1e-4)

@@ -20,10 +20,10 @@ def test_marching_agrees_with_the_transform():
     times = np.array([6.0, 7.0, 8.0])
     problem = PlaneProblem(OBSTACLE, -0.8, 1.2, times)
     march, invert = stepped(problem, times), inverted(problem, times)
-    marched, transformed = march((0, 0, 0, 0)), invert((0, 0, 1, 1))
+    marched, transformed = march((1, 1, 1, 0)), invert((1, 1, 1, 1))
     allowed = sum(
-        np.abs(march(at) - marched) for at in [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0)]
-    ) + sum(np.abs(invert(at) - transformed) for at in [(1, 0, 1, 1), (0, 1, 1, 1), (0, 0, 0, 1)])
+        np.abs(march(at) - marched) for at in [(2, 1, 1, 0), (1, 2, 1, 0), (1, 1, 2, 0)]
+    ) + sum(np.abs(invert(at) - transformed) for at in [(2, 1, 1, 1), (1, 2, 1, 1), (1, 1, 0, 1)])
     assert np.all(np.abs(marched - transformed) <= 2 * allowed + 1e-5)
     assert np.max(allowed) < TOLERANCE
 
@@ -37,7 +37,7 @@ def test_marching_agrees_with_monte_carlo(scene, level, paths):
     """On coarse grids, within 4.5 standard errors and the step's bias; false alarms 2e-5 in all."""
     p, horizon = 3, 2.0
     threshold, times = level * np.sqrt(p), np.array([p * horizon])
-    found = stepped(PlaneProblem(scene, -threshold, threshold, times), times)((0, 0, 0, 0))[0]
+    found = stepped(PlaneProblem(scene, -threshold, threshold, times), times)((1, 1, 1, 0))[0]
     sample = ns.crossing_probability(scene, level, [horizon], p, step=0.02, paths=paths, seed=7)
     allowed = 4.5 * sample.standard_error + np.abs(sample.step_bias)
     allowed += 4.5 * sample.step_bias_error + TOLERANCE
