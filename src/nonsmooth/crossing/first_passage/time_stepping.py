@@ -61,7 +61,8 @@ def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.nd
         )
         first = step * settings.first * min(duration, settings.early / damping)
         steps = _steps(problem, driven, other, interval, first)
-        at, values = _survival(steps, step * settings.longest / damping, last)
+        longest = step * settings.longest / max(damping, steps.rate)
+        at, values = _survival(steps, longest, last)
         found = CubicSpline(at, values)(times)
         return np.array([1 - found, found])
 

@@ -67,7 +67,11 @@ class SplitStep(ABC):
     interval : Interval
     step : float
         Length of a step.
+    rate : float
+        At which what `mix` splits acts; its steps should be shorter than the inverse.
     """
+
+    rate = 0.0
 
     def __init__(
         self,

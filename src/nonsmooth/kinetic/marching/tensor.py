@@ -6,9 +6,11 @@ small matrices, where exp(A t) has the square of the number of nodes. Half a ste
 and after O. The splitting is of order 2, as that of the transport is.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+import sympy
 
 from nonsmooth.grids.generator import assemble, evaluate, start_row
 from nonsmooth.kinetic.marching.split_step import Interval, SplitStep
@@ -16,6 +18,8 @@ from nonsmooth.kinetic.ordinates_plane import axes
 from nonsmooth.kinetic.tuning import PlaneLevel
 from nonsmooth.linear_algebra import dense
 from nonsmooth.scenes.scene import Scene
+
+_NEAR = 0.1  # distance from 0 at which the drift's slope is taken, over the end of an axis
 
 
 @dataclass(frozen=True)
@@ -30,12 +34,16 @@ class TensorOrdinates:
         D, for each value of the other variable or for all of them.
     other : numpy.ndarray, shape (d, o, o)
         O, for each value of the driven variable.
+    rate : float
+        At which the two variables act on each other, or the driven one relaxes; steps of exp(A t)
+        should be shorter than its inverse.
     """
 
     speeds: np.ndarray
     start: np.ndarray
     driven: np.ndarray
     other: np.ndarray
+    rate: float
 
 
 def tensor_ordinates(scene: Scene, ends: dict, level: PlaneLevel, time: float) -> TensorOrdinates:
@@ -71,6 +79,24 @@ def tensor_ordinates(scene: Scene, ends: dict, level: PlaneLevel, time: float) -
         ordered(start_row(scene, made)),
         driven[:1] if np.all(driven == driven[:1]) else driven,
         other,
+        _rate(scene, made),
+    )
+
+
+def _rate(scene, made):
+    """Largest rate of the drift about 0, but for the relaxation of the other variable alone."""
+    steps = np.array([-_NEAR, 0.0, _NEAR])
+    near = {symbol: axis.edges[-1] * steps for symbol, axis in made.items()}
+    drift, slopes = scene.numerical_drift(), {}
+    for row in made:
+        values = evaluate(sympy.sympify(drift[row]), made, near).reshape(3, 3)
+        changes = values[2, 1] - values[0, 1], values[1, 2] - values[1, 0]
+        for column, change in zip(made, changes, strict=True):
+            slopes[row, column] = change / np.ptp(near[column])
+    first, second = made
+    return max(
+        abs(slopes[scene.noise.driven, scene.noise.driven]),
+        math.sqrt(abs(slopes[first, second] * slopes[second, first])),
     )
 
 
@@ -98,6 +124,7 @@ class TensorSteps(SplitStep):
             flat[:pairs][::-1],
             step,
         )
+        self.rate = grid.rate
         self._driven = np.array([dense.exponential(step / 2 * part) for part in grid.driven])
         self._other = np.array([dense.exponential(step * part) for part in grid.other])
 

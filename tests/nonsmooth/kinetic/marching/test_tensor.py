@@ -1,9 +1,12 @@
 """Alternating directions against exp(A t) as a whole."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg
 
+import nonsmooth as ns
 from nonsmooth.grids.elements import discontinuous
 from nonsmooth.grids.generator import assemble
 from nonsmooth.kinetic.marching.split_step import Interval
@@ -94,3 +97,11 @@ def test_a_doubled_step_is_a_step_of_twice_the_length():
         steps.transport()
         steps.mix()
     assert short.survival() == pytest.approx(long.survival(), abs=1e-12)
+
+
+def test_the_rate_is_that_of_the_noise_or_of_the_spring():
+    """An Ornstein-Uhlenbeck noise relaxes at its own rate; a spring of stiffness 4 has rate 2."""
+    fast = ns.Scene("friction", ns.OrnsteinUhlenbeck(3.0, 1.0), n=50, damping=0.2)
+    stiff = replace(PLASTIC_STRAIN, damping=0.1, potential="2*x**2")
+    for scene, rate in ((fast, 3.0), (stiff, 2.0)):
+        assert tensor_ordinates(scene, boxed(scene), LEVEL, 1.0).rate == pytest.approx(rate)
