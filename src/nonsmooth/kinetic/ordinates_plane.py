@@ -27,7 +27,7 @@ from nonsmooth.kinetic import tuning
 from nonsmooth.scenes.scene import Scene
 
 
-class UnstableError(Exception):
+class UnstableError(RuntimeError):
     """A grid whose generator is far from dissipative, so that solutions grow."""
 
 

@@ -92,7 +92,7 @@ def _on_line(scene, lower, upper, tol):
 
     def error(solutions):
         changes = [abs(a - b) for (a, _), (b, _) in pairwise(solutions)]
-        kept = passage_tuning.EACH_PART.kept
+        kept = tuning.TRANSFORMED_MEAN.kept
         change = passage_tuning.REFINEMENT.safety * max(
             size * kept ** (len(changes) - 1 - k) for k, size in enumerate(changes)
         )
@@ -114,19 +114,19 @@ def _in_plane(scene, lower, upper, tol):
     seen = _amplified(problem, mean)
 
     def solve(resolution):
-        value, own = _at_zero(problem.transform(resolution, times, 0.0), mean, seen)
-        return np.array([[value], [own]])
+        found = _at_zero(problem.transform(resolution, times, 0.0), mean, seen)
+        return np.array(found)[:, None] / mean
 
     def stated(found):
-        return found.change[0, 0] + abs(found.value[1, 0]) + seen
+        return found.change[0, 0] + abs(found.value[1, 0]) + seen / mean
 
     found = refine_each_part(
         passage_tuning.PLANE_PARTS[:3],
         solve,
         lambda found: stated(found) <= tol * found.value[0, 0],
-        tol * mean,
+        tol,
     )
-    return float(found.value[0, 0]), float(stated(found))
+    return float(mean * found.value[0, 0]), float(mean * stated(found))
 
 
 def _rough(transform_for, time):

@@ -55,6 +55,7 @@ class TransformedMean:
     nodes: int = 15  # chosen: of half a circle, a multiple of 3; (0.3)^10 is 6e-6, (0.1)^10 nothing
     # chosen: largest difference of two circles, over what the unseen error of F is on the smallest
     agreement: float = 5.0
+    kept: float = 0.1  # chosen: a change between levels counts at least so much of the one before
 
 
 @dataclass(frozen=True)
