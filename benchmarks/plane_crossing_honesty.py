@@ -1,12 +1,15 @@
 """Whether the stated errors of crossings of two variables hold, and asking for less costs less.
 
 `python -m benchmarks.plane_crossing_honesty [first] [count] [tol] [paths]` draws random scenes with
-two state variables, intervals and p. It asks for five horizons, for one of them, and for Monte
-Carlo. The answer to the whole request may differ from that to the part by the errors of both, and
-from Monte Carlo by its own error, the bias of the step, and 4 standard errors. A line per scene
-tells the largest ratios and the seconds on one core; the last lines sum up.
+two state variables, intervals and p. It asks for five horizons, for one of them, for a fifth of the
+tolerance, and for Monte Carlo. The answer to the whole request may differ from the other two that
+are solved for by the errors of both, and from Monte Carlo by its own error, the bias of the step,
+and 4 standard errors. Each scene has a process of its own, which is ended after 300 seconds of
+processor time. A line per scene tells ratios and seconds on one core; the last lines sum up.
 """
 
+import multiprocessing
+import resource
 import sys
 import time
 import warnings
@@ -19,6 +22,9 @@ from nonsmooth.errors import NonsmoothError
 
 STANDARD_ERRORS = 4.0  # false alarms: 6e-5 per probability
 LONGEST = 300.0  # largest t C_b of which paths are drawn
+FINER = 5.0  # the tolerance over that of the finer answer
+LIMIT = 300  # seconds of processor time for a scene
+RATIOS = "part", "finer", "paths"
 
 
 def draw(rng):
@@ -46,63 +52,95 @@ def draw(rng):
 
 
 def asked(scene, interval, times, tol):
-    """Probabilities, their errors, seconds, and whether `tol` was met."""
+    """Answer, seconds, and whether `tol` was met; the answer is None if there is none."""
     began = time.process_time()
     try:
         found, met = deterministic_crossing(scene, np.array([interval]), times, tol), True
     except NonsmoothError as error:
         found, met = getattr(error, "result", None), False
-        print(f"  refused: {error}", file=sys.stderr, flush=True)
-    seconds = time.process_time() - began
-    if found is None:
-        return None, None, seconds, met
-    return found["probability"][0], found["probability_error"][0], seconds, met
+    return found, time.process_time() - began, met
 
 
-def compare(seed, tol, paths):
-    """Ratios of differences to what is stated, to a part and to Monte Carlo, and seconds."""
+def ratio(found, other, k=slice(None)):
+    """Largest difference of two answers over what both state; nothing if one is missing."""
+    if found is None or other is None:
+        return np.nan
+    apart = np.abs(other["probability"][0] - found["probability"][0][k])
+    stated = other["probability_error"][0] + found["probability_error"][0][k]
+    return float(np.max(apart / stated))
+
+
+def ratio_to_paths(found, scene, interval, times, paths, seed):
+    """Largest difference to Monte Carlo over what both allow, at times of which paths are drawn."""
+    short = times * scene.damping < LONGEST
+    if found is None or not paths or not short.any():
+        return np.nan
+    sample = ns.crossing_probability(
+        scene, interval, times[short], 1.0, method="monte_carlo", paths=paths, seed=seed
+    )
+    spread = np.maximum(sample.probability_error.values, 1 / paths)
+    bias = np.abs(sample.step_bias.values) + STANDARD_ERRORS * sample.step_bias_error.values
+    allowed = found["probability_error"][0][short] + STANDARD_ERRORS * spread + bias
+    return float(
+        np.max(np.abs(sample.probability.values - found["probability"][0][short]) / allowed)
+    )
+
+
+def compare(seed, tol, paths, send):
+    """Send one by one: the text of a scene, answers and ratios, each with the seconds."""
+    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
     rng = np.random.default_rng(seed)
     scene, interval, times = draw(rng)
-    probability, error, seconds, met = asked(scene, interval, times, tol)
-    k = int(rng.integers(len(times)))
-    part, part_error, part_seconds, _ = asked(scene, interval, times[k : k + 1], tol)
-    if probability is None or part is None:
-        return np.nan, np.nan, seconds, part_seconds, met
-    to_part = abs(part[0] - probability[k]) / (part_error[0] + error[k])
-    to_paths, short = np.nan, times * scene.damping < LONGEST
-    if paths and short.any():
-        few = times[short]
-        sample = ns.crossing_probability(
-            scene, interval, few, 1.0, method="monte_carlo", paths=paths, seed=seed
-        )
-        allowed = error[short] + STANDARD_ERRORS * np.maximum(
-            sample.probability_error.values, 1 / paths
-        )
-        allowed += np.abs(sample.step_bias.values) + STANDARD_ERRORS * sample.step_bias_error.values
-        to_paths = np.max(np.abs(sample.probability.values - probability[short]) / allowed)
-    print(
-        f"{seed}: {scene.model}, g = {scene.observable}, C_b = {scene.damping:.3g}, "
-        f"n = {scene.n:.3g}, ({interval[0]:.3g}, {interval[1]:.3g}), t = {times[0]:.3g} ...: "
-        f"{'met' if met else 'refused'}, part {to_part:.2g}, paths {to_paths:.2g}, "
-        f"{seconds:.1f} s, part {part_seconds:.1f} s",
-        flush=True,
+    send(
+        scene=f"{scene.model}, g = {scene.observable}, C_b = {scene.damping:.3g}, "
+        f"n = {scene.n:.3g}, ({interval[0]:.3g}, {interval[1]:.3g}), t = {times[0]:.3g} ..."
     )
-    return to_part, to_paths, seconds, part_seconds, met
+    whole, seconds, met = asked(scene, interval, times, tol)
+    send(met=met, seconds=seconds, answered=whole is not None)
+    k = int(rng.integers(len(times)))
+    part, seconds, _ = asked(scene, interval, times[k : k + 1], tol)
+    send(part=ratio(whole, part, slice(k, k + 1)), part_seconds=seconds)
+    send(paths=ratio_to_paths(whole, scene, interval, times, paths, seed))
+    finer, seconds, met = asked(scene, interval, times, tol / FINER)
+    send(finer=ratio(whole, finer), finer_seconds=seconds, finer_met=met)
 
 
-def main(first=0, count=100, tol=1e-3, paths=100_000):
+def row(seed, tol, paths):
+    """Compare in a process of its own; what it did not come to is missing."""
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(
+        target=compare, args=(seed, tol, paths, lambda **found: theirs.send(found))
+    )
+    process.start()
+    theirs.close()
+    found = {}
+    try:
+        while True:
+            found |= ours.recv()
+    except EOFError:
+        process.join()
+    met = {True: "met", False: "refused", None: "unanswered"}[found.get("met")]
+    ratios = ", ".join(f"{name} {found.get(name, np.nan):.2g}" for name in RATIOS)
+    times = ("seconds", "part_seconds", "finer_seconds")
+    seconds = ", ".join(f"{found.get(name, np.nan):.1f}" for name in times)
+    print(f"{seed}: {found['scene']}: {met}, {ratios}, seconds {seconds}", flush=True)
+    return found
+
+
+def main(first=0, count=100, tol=1e-3, paths=20_000):
     """Measure the scenes and print the sums."""
-    rows = np.array([compare(seed, tol, paths) for seed in range(first, first + count)], float)
-    to_part, to_paths, seconds, part, met = rows.T
-    print(f"scenes {count}, met {int(met.sum())}, at tol = {tol:g}")
-    for name, ratio in (("part", to_part), ("paths", to_paths)):
-        seen = ratio[np.isfinite(ratio)]
-        print(
-            f"{name}: {len(seen)} compared, {int(np.sum(seen > 1))} wrong, largest ratio ", end=""
-        )
-        print(f"{max(seen, default=0.0):.2g}")
-    print(f"seconds: median {np.median(seconds):.1f}, longest {seconds.max():.1f}; ", end="")
-    print(f"a part took at most {np.max(part / seconds):.2f} of the whole")
+    rows = [row(seed, tol, paths) for seed in range(first, first + count)]
+    met, finer_met = (sum(bool(r.get(name)) for r in rows) for name in ("met", "finer_met"))
+    ended = sum("finer" not in r for r in rows)
+    print(f"scenes {count}, met {met} at {tol:g}, {finer_met} at {tol / FINER:g}, {ended} ended")
+    for name in RATIOS:
+        seen = np.array([r[name] for r in rows if np.isfinite(r.get(name, np.nan))])
+        wrong, largest = int(np.sum(seen > 1)), max(seen, default=0.0)
+        print(f"{name}: {len(seen)} compared, {wrong} wrong, largest ratio {largest:.2g}")
+    for name in ("seconds", "part_seconds", "finer_seconds"):
+        seen = [r[name] for r in rows if name in r]
+        print(f"{name}: median {np.median(seen):.1f}, longest {max(seen):.1f}, of {len(seen)}")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nonsmooth.paths.ensembles import coupled, require_finite
+from nonsmooth.paths.absorption.passages import coupled_passages
+from nonsmooth.paths.ensembles import require_finite
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, extremes, new_panel
 from nonsmooth.paths.moments import bias_over_change
 from nonsmooth.paths.parallel import parallel
@@ -108,8 +109,7 @@ def first_passage_bias(
     """
     times = p * np.asarray(horizons, dtype=float)
     levels = np.sqrt(p) * np.array(bounds(threshold))
-    _, passage = coupled(scene, times, sampling, levels)
-    return bias_of_counts(scene, times, passage)
+    return bias_of_counts(scene, times, coupled_passages(scene, times, sampling, levels))
 
 
 def first_passage_shift(
@@ -136,7 +136,7 @@ def first_passage_shift(
         Sums over the paths of the powers 0 to 2 of log(time with step / time with step/2).
     """
     levels = np.sqrt(p) * np.array(bounds(threshold))
-    _, (fine, coarse) = coupled(scene, [p * horizon], sampling, levels)
+    fine, coarse = coupled_passages(scene, [p * horizon], sampling, levels)
     both = np.isfinite(fine) & np.isfinite(coarse)
     ratio = np.log(coarse[both] / fine[both])
     return np.array([len(ratio), ratio.sum(), np.sum(ratio**2)])
@@ -152,8 +152,8 @@ def bias_of_counts(
     scene : Scene
     times : numpy.ndarray, shape (k,)
     passage : numpy.ndarray, shape (2, paths) or (m, 2, paths)
-        First-passage times with half the step and with the step, from `coupled`; those of several
-        thresholds, from `coupled_crossings`.
+        First-passage times with half the step and with the step, from `coupled_passages`; those
+        of several thresholds, from `coupled_crossings`.
 
     Returns
     -------

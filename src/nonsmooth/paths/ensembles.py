@@ -192,7 +192,6 @@ def coupled(
     times: ArrayLike,
     sampling: Sampling,
     levels: tuple[float, float] = EVERYWHERE,
-    noise_of: Scene | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Simulate paths with a step and with half of it on the same noise.
 
@@ -205,10 +204,6 @@ def coupled(
     levels : (float, float)
         Lower and upper level whose first passage by D is timed.
 
-    noise_of : Scene, optional
-        A scene from the same start whose random numbers are used, by which ensembles of
-        scenes with other parameters are compared path by path; the scene's own unless given.
-
     Returns
     -------
     change : numpy.ndarray, shape (t, 4, 4)
@@ -220,7 +215,7 @@ def coupled(
 
     def run(job):
         block, count = job
-        panel, other = (_new_panel(noise_of or scene, sampling, block) for _ in range(2))
+        panel, other = (_new_panel(scene, sampling, block) for _ in range(2))
         passage = np.full((2, count), np.inf)
         sums, first, began = np.zeros((len(grid), 4, 4)), 0, 0.0
         for (steps, h), alike in groupby(grid):
@@ -277,18 +272,32 @@ def coupled_crossings(
 
 
 def _pairs(scene, times, sampling):
-    """Return the grid of times, and for each step on it the coefficients of its half and of it."""
-    scheme, precision = sampling.scheme, sampling.precision
+    """Return the grid of times and the coefficients of its steps, having compiled the loop."""
     grid = equal_steps(times, sampling.step)
-    pairs = {
+    pairs = pairs_of_steps(scene, grid, sampling)
+    compile_march_pair(*pairs[grid[0][1]], _new_panel(scene, sampling, 0))
+    return grid, pairs
+
+
+def pairs_of_steps(scene: Scene, grid: list, sampling: Sampling) -> dict[float, tuple]:
+    """Return the coefficients of half of each step and of the step, on the same noise.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : list of (int, float)
+        Numbers of steps and their lengths, as from `equal_steps`.
+    sampling : Sampling
+        Its step is not used: the grid has the steps.
+    """
+    scheme, precision = sampling.scheme, sampling.precision
+    return {
         h: (
             registry.coefficients(scene, scheme, h / 2, precision),
             registry.on_given_increments(registry.coefficients(scene, scheme, h, precision)),
         )
         for h in {h for _, h in grid}
     }
-    compile_march_pair(*pairs[grid[0][1]], _new_panel(scene, sampling, 0))
-    return grid, pairs
 
 
 def _new_panel(scene, sampling, block):

@@ -169,6 +169,16 @@ POISSON_FIT = PoissonFit()
 
 
 @dataclass(frozen=True)
+class Passages:
+    """Paths that are dropped after they have crossed, see `absorption.passages`."""
+
+    pieces: int = 64  # chosen: times at which they are; in between they cost a part of this
+
+
+PASSAGES = Passages()
+
+
+@dataclass(frozen=True)
 class CrossEntropy:
     """The fit of a guide to paths that have reached a level, see `tilted.cross_entropy`."""
 

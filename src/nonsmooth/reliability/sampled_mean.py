@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.paths.ensembles import coupled
+from nonsmooth.paths.absorption.passages import coupled_passages
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import bias_over_change
 from nonsmooth.paths.resolution import coarse_step, paths_for, refined_step, require_possible
@@ -63,7 +63,7 @@ def sampled_mean_time(
 
     def sample(step, paths, horizon, label):
         sampling = Sampling(step, paths, labelled(seed, label), threads=threads)
-        _, passage = coupled(scene, [horizon], sampling, (lower, upper))
+        passage = coupled_passages(scene, [horizon], sampling, (lower, upper))
         return _Sample(passage, horizon, order)
 
     settings, first = tuning.SAMPLED_MEAN, coarse_step(scene) if step is None else step

@@ -10,7 +10,7 @@ import numpy as np
 
 from nonsmooth.crossing import tuning as crossing_tuning
 from nonsmooth.errors import ToleranceError
-from nonsmooth.paths.ensembles import coupled
+from nonsmooth.paths.absorption.passages import coupled_passages
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
 from nonsmooth.paths.moments import fine_bias_over_change
 from nonsmooth.paths.resolution import first_step, paths_for, refined_step, require_possible
@@ -99,7 +99,7 @@ def _difference(question, parameter, apart, sampling):
         # the number of steps must not depend on p
         step = 2 * sampling.step * other.times[-1] / question.times[-1]
         own = Sampling(step, sampling.paths, sampling.seed, threads=sampling.threads)
-        _, passage = coupled(other.scene, other.times, own, other.levels, question.scene)
+        passage = coupled_passages(other.scene, other.times, own, other.levels, question.scene)
         outcome.append([own[None, :] <= other.times[:, None] for own in passage])
     return [
         (above.astype(float) - below) / (2 * apart) for above, below in zip(*outcome, strict=True)

@@ -5,6 +5,7 @@ variable that noise drives it is also multiplied, in each step, with the probabi
 bridge between the ends of the step stays inside, so that crossings within steps are counted.
 
 - `survival.crossed`: the sums over an ensemble from which probabilities and errors follow
+- `passages.coupled_passages`: first-passage times of int g with two steps, without bridges
 - `moving`: moments and paths under an envelope, by the same loop
 - `envelope.scales`: the noise of each step under an envelope
 - `loop.march_survival`: the loop over time steps, with a step and with half of it on the same noise

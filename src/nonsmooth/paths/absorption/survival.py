@@ -13,11 +13,10 @@ from nonsmooth.paths.absorption.loop import (
     compile_march_survival,
     march_survival,
 )
-from nonsmooth.paths.ensembles import require_finite
+from nonsmooth.paths.ensembles import pairs_of_steps, require_finite
 from nonsmooth.paths.kernels.panel import DELTA, STATE, new_panel
 from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
@@ -98,15 +97,9 @@ def over_blocks(
     SceneError
         As `crossed` does.
     """
-    scheme, precision = sampling.scheme, sampling.precision
+    precision = sampling.precision
     grid = equal_steps(times, 2 * sampling.step)
-    pairs = {
-        h: (
-            registry.coefficients(scene, scheme, h / 2, precision),
-            registry.on_given_increments(registry.coefficients(scene, scheme, h, precision)),
-        )
-        for h in {h for _, h in grid}
-    }
+    pairs = pairs_of_steps(scene, grid, sampling)
     factors = _factors(envelope, grid)
     compile_march_survival(*pairs[grid[0][1]], new_panel(scene, sampling.seed, 0, precision))
 
