@@ -77,7 +77,7 @@ def invariant_density(
             points = _equidistant(half_widths(scene, tensor_grid.depth_for(tol)))
         found, error = _of_closed_form(closed, points)
         return _dataset(found, error, points)
-    grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
+    grid = _first_grid(scene, tol)
     if points is None:
         points = _equidistant(grid.ends)
     names = [symbol.name for symbol in STATE_VARIABLES if symbol.name in scene.state]
@@ -98,6 +98,14 @@ def invariant_density(
         present,
         tol_given,
     )
+
+
+def _first_grid(scene, tol):
+    """Return the first grid, with a box that suits the tolerance."""
+    chosen = tuning.INVARIANT_DENSITY
+    level = chosen.fitted[scene.dimension]
+    grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), level)
+    return grid.all_raised(chosen.first - level)
 
 
 def _require_points(scene, points):
@@ -290,7 +298,7 @@ def bin_averages(
     _require_finite(scene)
     if closed := closed_form(scene):
         return _averages_of_closed_form(scene, closed, edges)
-    grid = tensor_grid.fitted(scene, tensor_grid.depth_for(tol), 1)
+    grid = _first_grid(scene, tol)
     accuracy = tol * tuning.INVARIANT_DENSITY.residual
 
     def present(refined):

@@ -59,6 +59,9 @@ class InvariantDensity:
 
     # chosen: tolerance unless one is given; it is reached in seconds
     tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2})
+    first: int = 1  # chosen: level of the first grid
+    # chosen: levels of the grids on which the box and the shift are fitted; cheap ones
+    fitted: Mapping[int, int] = field(default_factory=lambda: {1: 1, 2: 1, 3: 1, 4: 0})
     # chosen: on coarser grids the error that two levels show may be smaller than the true one
     loosest: float = 0.3
     # chosen: largest factor by which a level reduces the error; if a difference falls by more, the
