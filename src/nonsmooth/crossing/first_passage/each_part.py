@@ -53,12 +53,13 @@ def refine_each_part(
     Returns
     -------
     Found
-        The last, or the last before a grid is unstable or no longer better.
+        The last, or the last before a grid is unstable or no longer better, or from which on the
+        tolerance is out of reach.
 
     Raises
     ------
     UnstableError
-        If the first one is.
+        If the first one is, and the next one, too.
     """
     with counter("solutions") as advance:
 
@@ -74,36 +75,42 @@ def refine_each_part(
 def _refined(parts, solution, met, tol):
     """Refine with solutions that are not computed twice."""
     settings = tuning.EACH_PART
-    at = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
+    begun = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
+    at = begun
     # the changes of finer parts are added: what remains is the change of their changes
     finer = np.array([part.step > 0 for part in parts])
     counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
     falls = np.array([part.falls for part in parts])[:, None, None]
-    floor, found = None, None
+    before, found = None, None
     while True:
         try:
             base = solution(at)
             changes = np.array(
                 [solution(_stepped(at, k, part.step)) - base for k, part in enumerate(parts)]
             )
-            if floor is None:
-                floor = falls * _changes_from_coarser(parts, solution, at)
+            if before is None:
+                before = _changes_from_coarser(parts, solution, at)
+                floor = falls * before
         except UnstableError:
-            if found is None:
+            if found is not None:
+                return found
+            if at != begun:
                 raise
-            return found
+            at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
+            continue
         sizes = np.maximum(counted * np.abs(changes), floor)
         coarser, found = found, Found(base + changes[finer].sum(axis=0), sizes.sum(axis=0))
         if met(found):
             return found
         if coarser is not None and not found.change.max() < coarser.change.max():
             return coarser
-        open_ = np.array([at[k] < part.last for k, part in enumerate(parts)])
-        chosen = _to_refine(np.where(open_, sizes.max(axis=(1, 2)), 0.0), sizes, falls, tol)
-        if not chosen.any():
+        left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
+        chosen = _to_refine(np.where(left > 0, sizes.max(axis=(1, 2)), 0.0), sizes, falls, tol)
+        if not chosen.any() or _least(changes, before, falls, left) > settings.hopeless * tol:
             return found
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
-        floor = np.where(chosen[:, None, None], falls * sizes, floor)
+        refined = chosen[:, None, None]
+        floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)
 
 
 def _changes_from_coarser(parts, solution, at):
@@ -117,6 +124,16 @@ def _changes_from_coarser(parts, solution, at):
             for k, part in enumerate(parts)
         ]
     )
+
+
+def _least(changes, before, falls, left):
+    """Extrapolate the sum of the changes to the finest resolutions of all parts.
+
+    Each is taken to go on to fall as it has fallen, at least as is usual for its part.
+    """
+    last, first = (np.max(np.abs(size), axis=(1, 2)) for size in (changes, before))
+    rate = np.divide(last, first, out=np.zeros_like(last), where=first > 0)
+    return np.sum(last * np.clip(rate, np.ravel(falls), 1.0) ** left)
 
 
 def _to_refine(worst, sizes, falls, tol):

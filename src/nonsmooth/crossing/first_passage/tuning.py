@@ -160,6 +160,9 @@ class EachPart:
     coarser: float = 0.5
     enough: float = 0.8  # chosen: parts are refined until the error should be so much of tol
     loose: float = 1e-3  # chosen: tolerance from which some parts begin coarser by one
+    # chosen: there is no hope if the changes that are left at the finest resolution, extrapolated
+    # from two of them, are so many times the tolerance
+    hopeless: float = 10.0
 
 
 @dataclass(frozen=True)

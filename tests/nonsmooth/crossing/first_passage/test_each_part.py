@@ -97,3 +97,29 @@ class TestRefineEachPart:
             assert found.change.max() == 1e-2
         with pytest.raises(UnstableError, match="too fine"):
             refine_each_part((Part(2, 3, 1),), solve, lambda found: False, 1e-4)
+
+    def test_a_grid_that_is_too_coarse_to_be_stable(self):
+        """The next one is tried; where the coarser one of the first comparison is, as well."""
+
+        def solve(at):
+            if at[0] < 2:
+                raise UnstableError("too coarse")
+            return np.array([[0.1 ** at[0]], [0.0]])
+
+        for first in (2, 3):
+            found = refine_each_part((Part(first, 5, 1),), solve, lambda found: True, 1e-2)
+            assert found.value[0, 0] == pytest.approx(1e-4)
+        with pytest.raises(UnstableError, match="too coarse"):
+            refine_each_part((Part(1, 5, 1),), solve, lambda found: True, 1e-2)
+
+    @pytest.mark.parametrize(("rate", "asked"), [(0.9, 3), (0.5, 5)])
+    def test_ends_without_hope(self, rate, asked):
+        """At 0.9 a resolution, five leave more than ten times a thousandth; at 0.5 they do not."""
+        seen = set()
+
+        def solve(at):
+            seen.add(at)
+            return np.array([[rate ** at[0]], [0.0]])
+
+        refine_each_part((Part(1, 6, 1),), solve, lambda found: len(seen) > 4, 1e-3)
+        assert len(seen) == asked
