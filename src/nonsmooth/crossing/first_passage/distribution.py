@@ -146,7 +146,7 @@ def _part_by_part(problem, times, parts, solver, tol):
 
     def stated(found):
         solution = np.clip(found.value, 0.0, 1.0)
-        change = found.change + np.abs(found.value - solution)
+        change = np.minimum(found.change + np.abs(found.value - solution), 1.0)
         return solution, _with_floors(problem, times, solution, change)
 
     found = refine_each_part(

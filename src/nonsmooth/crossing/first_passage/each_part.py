@@ -25,7 +25,8 @@ class Found:
     Attributes
     ----------
     value, change : numpy.ndarray, shape (2, k)
-        Probability and survival probability, and the sum of the changes of all parts.
+        Probability and survival probability, and the sum of the changes of all parts; where these
+        do not fall, of all that would follow.
     """
 
     value: np.ndarray
@@ -103,11 +104,12 @@ def _refined(parts, solution, met, tol):
         if met(found):
             return found
         if coarser is not None and not found.change.max() < coarser.change.max():
-            return coarser
+            return Found(coarser.value, coarser.change + np.abs(found.value - coarser.value))
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
         chosen = _to_refine(np.where(left > 0, sizes.max(axis=(1, 2)), 0.0), sizes, falls, tol)
-        if not chosen.any() or _least(changes, before, falls, left) > settings.hopeless * tol:
-            return found
+        rates = _rates(changes, before)
+        if not chosen.any() or _least(changes, rates, falls, left) > settings.hopeless * tol:
+            return Found(found.value, np.tensordot(_tails(rates), sizes, axes=1))
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
         refined = chosen[:, None, None]
         floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)
@@ -126,14 +128,25 @@ def _changes_from_coarser(parts, solution, at):
     )
 
 
-def _least(changes, before, falls, left):
+def _rates(changes, before):
+    """Return what each part changes over what it changed before; 0 where this is not known."""
+    last, first = (np.max(np.abs(size), axis=(1, 2)) for size in (changes, before))
+    return np.divide(last, first, out=np.zeros_like(last), where=first > 0)
+
+
+def _least(changes, rates, falls, left):
     """Extrapolate the sum of the changes to the finest resolutions of all parts.
 
     Each is taken to go on to fall as it has fallen, at least as is usual for its part.
     """
-    last, first = (np.max(np.abs(size), axis=(1, 2)) for size in (changes, before))
-    rate = np.divide(last, first, out=np.zeros_like(last), where=first > 0)
-    return np.sum(last * np.clip(rate, np.ravel(falls), 1.0) ** left)
+    sizes = np.max(np.abs(changes), axis=(1, 2))
+    return np.sum(sizes * np.clip(rates, np.ravel(falls), 1.0) ** left)
+
+
+def _tails(rates):
+    """Sum up all further changes over the last ones, if they go on to fall so; at least 1."""
+    rates = np.minimum(rates, tuning.EACH_PART.slowest)
+    return np.maximum(rates / (1 - rates), 1.0)
 
 
 def _to_refine(worst, sizes, falls, tol):
