@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -279,7 +280,7 @@ def _pairs(scene, times, sampling):
     return grid, pairs
 
 
-def pairs_of_steps(scene: Scene, grid: list, sampling: Sampling) -> dict[float, tuple]:
+def pairs_of_steps(scene: Scene, grid: list, sampling: Sampling) -> dict[float, tuple[Any, Any]]:
     """Return the coefficients of half of each step and of the step, on the same noise.
 
     Parameters
