@@ -138,7 +138,13 @@ REFUSED_DATASETS = {
 }
 
 
-@pytest.mark.parametrize("name", REFUSED_DATASETS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name == "W from afar" else name
+        for name in REFUSED_DATASETS
+    ],
+)
 def test_refused_datasets_are_right(name):
     """They are what the default returns, within the errors of both (five standard errors)."""
     ask, tol, variable = REFUSED_DATASETS[name]

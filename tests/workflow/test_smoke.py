@@ -128,6 +128,7 @@ def test_tables_are_valid_typst(smoke_run, tmp_path):
         assert typst.compile(source.read_bytes()).startswith(b"%PDF")
 
 
+@pytest.mark.slow
 def test_one_core_gives_the_same_bytes_as_two(smoke_run):
     """Monte Carlo, solvers, a table and figures, recomputed elsewhere with one core."""
     elsewhere = "results/one_core"
