@@ -29,7 +29,7 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     SceneError
-        If it is no such dataset, or an empty one.
+        If it is no such dataset, an empty one, or one with numbers outside of [0, 1].
     """
     if not isinstance(crossing, xr.Dataset) or not set(_NEEDED) <= set(crossing.data_vars):
         raise SceneError(
@@ -38,6 +38,11 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
     W, error, lower, upper = (crossing[name] for name in _NEEDED)
     if not W.size:
         raise SceneError("crossing has no probabilities; give what crossing_probability returned")
+    if not all((part.values >= 0).all() and (part.values <= 1).all() for part in (W, lower, upper)):
+        raise SceneError(
+            "crossing has numbers that are no probabilities; give what crossing_probability "
+            "returned, unchanged"
+        )
     # near W = 1 the complement has more digits
     survival = crossing.get("survival", 1 - W)
     beta = xr.where(W < 0.5, -ndtri(W), ndtri(survival))

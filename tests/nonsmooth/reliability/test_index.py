@@ -48,3 +48,11 @@ def test_what_is_no_crossing_probability_is_refused():
     names = "probability", "probability_error", "lower", "upper"
     with pytest.raises(SceneError, match="has no probabilities"):
         ns.reliability_index(xr.Dataset({name: ("horizon", []) for name in names}))
+
+
+@pytest.mark.parametrize("factor", [np.nan, -1.0, 3.0])
+def test_numbers_that_are_no_probabilities_are_refused(factor):
+    """Not an index of nan."""
+    crossing = ns.crossing_probability(ns.Scene("friction"), 0.5, [1.0], method="asymptotic")
+    with pytest.raises(SceneError, match="no probabilities"):
+        ns.reliability_index(crossing * factor)
