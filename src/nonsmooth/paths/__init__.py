@@ -15,6 +15,7 @@ the step and with half of it on the same noise.
 - `parallel.parallel`: blocks of paths on several threads, which Ctrl-C stops
 - `cost`: what a simulation would cost; what nobody can wait for is refused
 - `absorption.survival.crossed`: how many paths have left an interval of the state
+- `absorption.passages.coupled_passages`: first-passage times of int g with two steps
 - `time_grids`, `control_variate`: output times; a variable of known mean that reduces the
   standard error
 - `schemes` holds the time-stepping schemes, `kernels` what they are built from
