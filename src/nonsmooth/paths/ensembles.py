@@ -212,7 +212,7 @@ def coupled(
     passage : numpy.ndarray, shape (2, paths)
         First-passage times with step h/2 and h, inf if there is none.
     """
-    grid, pairs = _pairs(scene, times, sampling)
+    grid, pairs = compiled_pairs(scene, times, sampling)
 
     def run(job):
         block, count = job
@@ -251,7 +251,7 @@ def coupled_crossings(
         First output times by which D has reached one of the levels, with step h/2 and h; inf if
         there is none.
     """
-    grid, pairs = _pairs(scene, times, sampling)
+    grid, pairs = compiled_pairs(scene, times, sampling)
     lower, upper = intervals.T[:, :, None]
 
     def run(job):
@@ -272,8 +272,16 @@ def coupled_crossings(
     return _gathered(run, grid, sampling)
 
 
-def _pairs(scene, times, sampling):
-    """Return the grid of times and the coefficients of its steps, having compiled the loop."""
+def compiled_pairs(
+    scene: Scene, times: ArrayLike, sampling: Sampling
+) -> tuple[list[tuple[int, float]], dict[float, tuple[Any, Any]]]:
+    """Return the grid of times and `pairs_of_steps` on it, having compiled the loop for them.
+
+    Parameters
+    ----------
+    scene, times, sampling
+        As for `coupled`.
+    """
     grid = equal_steps(times, sampling.step)
     pairs = pairs_of_steps(scene, grid, sampling)
     compile_march_pair(*pairs[grid[0][1]], _new_panel(scene, sampling, 0))

@@ -172,7 +172,8 @@ POISSON_FIT = PoissonFit()
 class Passages:
     """Paths that are dropped after they have crossed, see `absorption.passages`."""
 
-    pieces: int = 64  # chosen: times at which they are; in between they cost a part of this
+    # chosen: times at which they are; a path that has crossed is followed a 64th of the way at most
+    pieces: int = 64
 
 
 PASSAGES = Passages()

@@ -11,12 +11,11 @@ from numpy.typing import ArrayLike
 
 from nonsmooth.paths import tuning
 from nonsmooth.paths.cost import require_memory
-from nonsmooth.paths.ensembles import pairs_of_steps, require_finite
+from nonsmooth.paths.ensembles import compiled_pairs, require_finite
 from nonsmooth.paths.kernels.panel import Panel, new_panel
 from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.sampling import Sampling
-from nonsmooth.paths.time_grids import equal_steps
-from nonsmooth.paths.time_loop import compile_march_pair, march_pair
+from nonsmooth.paths.time_loop import march_pair
 from nonsmooth.scenes.scene import Scene
 
 
@@ -52,13 +51,10 @@ def coupled_passages(
     SceneError
         If a parameter is out of range or a path diverges.
     """
-    grid = equal_steps(times, sampling.step)
-    pairs = pairs_of_steps(scene, grid, sampling)
+    grid, pairs = compiled_pairs(scene, times, sampling)
 
     def panel(block):
         return new_panel(noise_of or scene, sampling.seed, block, sampling.precision)
-
-    compile_march_pair(*pairs[grid[0][1]], panel(0))
 
     def run(job):
         block, count = job
