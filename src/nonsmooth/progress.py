@@ -8,7 +8,7 @@ import contextvars
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from typing import Any, TypeVar
@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 Result = TypeVar("Result")
 
 DELAY = 1.0  # seconds; what is over sooner needs no bar
-BEAT = 0.5  # seconds between two looks at the clock
+BEAT = 0.5  # seconds between two looks at the clock, or for Ctrl-C
 
 _rehearsing = contextvars.ContextVar("rehearsing", default=False)
 
@@ -121,6 +121,16 @@ def interruptible(call: Callable[[], Result]) -> Result:
     context = contextvars.copy_context()  # has numpy's treatment of overflow
 
     threading.Thread(target=fulfil, args=(result, partial(context.run, call)), daemon=True).start()
+    return awaited(result)
+
+
+def awaited(result: Future) -> Any:
+    """Wait for what another thread promised, looking for Ctrl-C again and again.
+
+    Python misses it for the whole of a wait if it comes just before that begins.
+    """
+    while not wait([result], BEAT).done:
+        pass
     return result.result()
 
 

@@ -26,7 +26,7 @@ from nonsmooth.grids import tuning
 from nonsmooth.grids.elements import Axis
 from nonsmooth.grids.generator import assemble
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.progress import begin, fulfil
+from nonsmooth.progress import awaited, begin, fulfil
 from nonsmooth.scenes.scene import Scene
 
 
@@ -104,7 +104,7 @@ class SparseFactors:
         free = partial(self._kept.pop, self._key, None)
         weakref.finalize(self, workshop.put, free).atexit = False
         try:
-            done.result()
+            awaited(done)
         except MemoryError:
             raise ToleranceError(
                 f"the memory does not hold the factors of {matrix.shape[0]} equations; choose a "
