@@ -120,24 +120,37 @@ def _in_plane(scene, intervals, times, tol):
 
 
 def _one_in_plane(scene, lower, upper, times, tol):
-    """Solve for two state variables: early times by steps, later ones by contours."""
+    """Solve for two state variables: early times by steps, later ones by contours.
 
-    def part_by_part(here, parts, solver):
+    Contours grow accurate with time, steps become many. In between, steps are tried where contours
+    miss the tolerance.
+    """
+    solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
+    reasons = []
+
+    def solve(here, parts, solver):
+        """Solve at some of the times; keep what has a smaller error than what is known."""
+        if not here.any():
+            return
         problem = PlaneProblem(scene, lower, upper, times[here])
-        return _part_by_part(problem, times[here], parts, solver, tol)
-
-    early, found = times * scene.damping <= tuning.TIME_STEPPING.until, []
-    if early.any():
         try:
-            found.append(part_by_part(early, tuning.STEPPED_PARTS, stepped))
-        except UnstableError:  # slabs are stable on more grids
-            early = times < 0
-    if not early.all():
-        try:
-            found.append(part_by_part(~early, tuning.PLANE_PARTS, inverted))
+            found, stated = _part_by_part(problem, times[here], parts, solver, tol)
         except UnstableError as unstable:
-            raise ToleranceError(f"{unstable}; use method='monte_carlo'") from None
-    solution, error = (np.hstack(parts) for parts in zip(*found, strict=True))
+            reasons.append(str(unstable))
+            return
+        better = stated.max(axis=0) < error[:, here].max(axis=0)
+        chosen = np.flatnonzero(here)[better]
+        solution[:, chosen], error[:, chosen] = found[:, better], stated[:, better]
+
+    settings, relaxations = tuning.TIME_STEPPING, times * scene.damping
+    early = relaxations <= settings.until
+    solve(early, tuning.STEPPED_PARTS, stepped)
+    solve(np.isinf(error[0]), tuning.PLANE_PARTS, inverted)  # slabs are stable on more grids
+    missed = np.any(error > tol, axis=0)
+    if missed.any() and not missed[early].any() and relaxations[missed][-1] <= settings.latest:
+        solve(missed, tuning.STEPPED_PARTS, stepped)
+    if np.isinf(error).any():
+        raise ToleranceError(f"{reasons[-1]}; use method='monte_carlo'")
     return _answer(PlaneProblem(scene, lower, upper, times), times, solution, error, tol)
 
 

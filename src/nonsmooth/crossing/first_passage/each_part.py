@@ -3,7 +3,8 @@
 Two levels may agree although they are wrong, if both leave the same part coarse. Here each part of
 the resolution is changed by itself. What the solution changes then is the error of this part, and
 the error is the sum over all parts. It counts at least as much of the change before as is usual for
-the part: two resolutions may agree by chance. The parts with the largest errors are refined.
+the part: two resolutions may agree by chance. Where changes fall slowly, it counts all that would
+follow. The parts with the largest errors are refined.
 """
 
 from collections.abc import Callable
@@ -26,7 +27,7 @@ class Found:
     ----------
     value, change : numpy.ndarray, shape (2, k)
         Probability and survival probability, and the sum of the changes of all parts; where these
-        do not fall, of all that would follow.
+        fall by less than a half, of all that would follow.
     """
 
     value: np.ndarray
@@ -82,12 +83,16 @@ def _refined(parts, solution, met, tol):
     finer = np.array([part.step > 0 for part in parts])
     counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
     falls = np.array([part.falls for part in parts])[:, None, None]
-    before, found = None, None
+    before, found, changes, size = None, None, None, np.inf
+    settled = np.full(len(parts), False)
     while True:
         try:
             base = solution(at)
             changes = np.array(
-                [solution(_stepped(at, k, part.step)) - base for k, part in enumerate(parts)]
+                [
+                    changes[k] if settled[k] else solution(_stepped(at, k, part.step)) - base
+                    for k, part in enumerate(parts)
+                ]
             )
             if before is None:
                 before = _changes_from_coarser(parts, solution, at)
@@ -99,17 +104,22 @@ def _refined(parts, solution, met, tol):
                 raise
             at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
             continue
+        rates = _rates(changes, before)
         sizes = np.maximum(counted * np.abs(changes), floor)
-        coarser, found = found, Found(base + changes[finer].sum(axis=0), sizes.sum(axis=0))
+        errors = _tails(rates)[:, None, None] * sizes
+        coarser, found = found, Found(base + changes[finer].sum(axis=0), errors.sum(axis=0))
         if met(found):
             return found
-        if coarser is not None and not found.change.max() < coarser.change.max():
+        size, larger = sizes.sum(axis=0).max(), size
+        if coarser is not None and not size < larger:
             return Found(coarser.value, coarser.change + np.abs(found.value - coarser.value))
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
-        chosen = _to_refine(np.where(left > 0, sizes.max(axis=(1, 2)), 0.0), sizes, falls, tol)
-        rates = _rates(changes, before)
+        # what hardly counts is neither refined nor measured again on the next grid
+        worst = errors.max(axis=(1, 2))
+        settled = worst <= settings.settled * tol
+        chosen = _to_refine(np.where((left > 0) & ~settled, worst, 0.0), errors, falls, tol)
         if not chosen.any() or _least(changes, rates, falls, left) > settings.hopeless * tol:
-            return Found(found.value, np.tensordot(_tails(rates), sizes, axes=1))
+            return found
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
         refined = chosen[:, None, None]
         floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)

@@ -160,6 +160,8 @@ class EachPart:
     coarser: float = 0.5
     enough: float = 0.8  # chosen: parts are refined until the error should be so much of tol
     loose: float = 1e-3  # chosen: tolerance from which some parts begin coarser by one
+    # chosen: changes up to so much of tol are left as they are; those of four parts may be met
+    settled: float = 0.2
     # chosen: there is no hope if the changes that are left at the finest resolution, extrapolated
     # from two of them, are so many times the tolerance
     hopeless: float = 10.0
@@ -235,7 +237,8 @@ class PlaneGrids:
 class TimeStepping:
     """Steps in time of two state variables."""
 
-    until: float = 6.0  # chosen: last time, in relaxation times; later the transform is tame
+    until: float = 10.0  # chosen: last time, in relaxation times; later the transform is tame
+    latest: float = 25.0  # chosen: last time where contours miss the tolerance
     ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x
     # chosen: polynomial degree in x; the smallest element over the lesser of the distance to the
     # threshold and of the way that int g goes in a relaxation time; the largest over the distance

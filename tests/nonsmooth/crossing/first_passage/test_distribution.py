@@ -5,8 +5,11 @@ import pytest
 from scipy.special import ndtr
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError
-from references import far
+from nonsmooth.crossing.first_passage import distribution
+from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.kinetic.ordinates_plane import UnstableError
+from references import COLORED_FRICTION, far
 
 
 def deterministic(scene, threshold, horizons, tol=1e-7):
@@ -71,3 +74,35 @@ def test_refused_where_g_changes_its_sign():
     """A start where g changes its sign on the way to the bulk is told to sample."""
     with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
         deterministic(far(8.0, observable="y*(y**2 - 49)"), 0.6, [1.0])
+
+
+class TestWhereSlabsFail:
+    """Steps in time answer up to some times; later, the refusal says what helps."""
+
+    @pytest.fixture(autouse=True)
+    def unstable(self, monkeypatch):
+        """Let all slabs fail."""
+
+        def fails(problem, times):
+            def solve(at):
+                raise UnstableError("the slabs amplify")
+
+            return solve
+
+        monkeypatch.setattr(distribution, "inverted", fails)
+
+    @pytest.mark.slow
+    def test_steps_take_over(self, monkeypatch):
+        """They agree with slabs within what both state."""
+        levels, times, tol = np.array([[-1.0, 1.0]]), np.array([8.0, 12.0]), 1e-2
+        by_steps = deterministic_crossing(COLORED_FRICTION, levels, times, tol)
+        monkeypatch.undo()
+        by_slabs = deterministic_crossing(COLORED_FRICTION, levels, times, tol)
+        allowed = by_steps["probability_error"] + by_slabs["probability_error"]
+        assert np.all(np.abs(by_steps["probability"] - by_slabs["probability"]) <= allowed)
+
+    def test_too_late_for_steps(self):
+        """Thirty relaxation times are more than steps are tried for."""
+        levels, times = np.array([[-1.0, 1.0]]), np.array([30.0])
+        with pytest.raises(ToleranceError, match="amplify; use method='monte_carlo'"):
+            deterministic_crossing(COLORED_FRICTION, levels, times, 1e-3)

@@ -42,6 +42,20 @@ class TestRefineEachPart:
         assert {at[1] for at in asked} == {0, 1}  # never refined, only looked at
         assert len(asked) == len(set(asked))
 
+    @pytest.mark.parametrize(("size", "once"), [(1e-3, True), (1e-2, False)])
+    def test_what_hardly_counts_is_measured_once(self, size, once):
+        """A change below a fifth of the tolerance goes on to count while the others are refined."""
+        asked, tol = set(), 1e-2
+
+        def solve(at):
+            asked.add(at)
+            return solution([lambda n: 0.2**n, lambda n: size * 0.5**n])(at)
+
+        parts = Part(0, 9, 1), Part(0, 9, 1)
+        found = refine_each_part(parts, solve, lambda found: found.change.max() <= tol, tol)
+        assert (len([at for at in asked if at[1] > 0]) == 1) == once
+        assert abs(found.value[0, 0]) <= found.change[0, 0]
+
     def test_a_change_counts_a_tenth_of_the_one_before(self):
         """An error that changes its sign and seems to vanish is not taken to be zero."""
         values = [0.0, 1e-2, 1e-2, 1e-2]
