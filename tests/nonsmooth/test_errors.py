@@ -141,7 +141,7 @@ REFUSED_DATASETS = {
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=pytest.mark.slow) if name == "W from afar" else name
+        pytest.param(name, marks=pytest.mark.slow) if name in ("W", "W from afar") else name
         for name in REFUSED_DATASETS
     ],
 )
@@ -160,6 +160,7 @@ def test_refused_datasets_are_right(name):
     assert (distance <= times * errors + 2 * bias).all()
 
 
+@pytest.mark.slow
 def test_densities_that_miss_the_tolerance_are_kept():
     """On one grid more they change by less than stated."""
     with pytest.raises(ToleranceError, match="values up to") as refused:
@@ -168,6 +169,7 @@ def test_densities_that_miss_the_tolerance_are_kept():
     assert {"density_y", "density_x_error", "density_y_x"} <= set(found.variables)
 
 
+@pytest.mark.slow
 def test_the_default_is_answered_with_a_warning():
     """Without tol, what a solver misses is returned; and what is stated holds."""
     scene = ns.Scene("elasto_plastic", potential="x**2/2", n=3000.0)

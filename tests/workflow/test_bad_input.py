@@ -9,6 +9,11 @@ import yaml
 RESULTS = "results/smoke"
 
 
+def slow(*values):
+    """Mark what runs the workflow once more."""
+    return pytest.param(*values, marks=pytest.mark.slow)
+
+
 def lines_with(run, text):
     """Lines of the output that contain a text."""
     return [line for line in (run.stdout + run.stderr).splitlines() if text in line]
@@ -77,11 +82,11 @@ def of_another_model(path):
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        (truncated, " is truncated, changed, or no artifact"),
+        slow(truncated, " is truncated, changed, or no artifact"),
         (flipped, " is damaged"),
-        (with_nan, " is truncated, changed, or no artifact"),
-        (foreign, " is truncated, changed, or no artifact"),
-        (of_another_model, ": it is trajectories/obstacle.nc under another name"),
+        slow(with_nan, " is truncated, changed, or no artifact"),
+        slow(foreign, " is truncated, changed, or no artifact"),
+        slow(of_another_model, ": it is trajectories/obstacle.nc under another name"),
     ],
 )
 def test_damaged_artifact(finished, damage, message):
@@ -100,7 +105,7 @@ def test_damaged_artifact(finished, damage, message):
 
 
 @pytest.mark.parametrize(
-    "name", ["tables/table_5.typ", "figures/figure_1.pdf", "paper/values.json"]
+    "name", [slow("tables/table_5.typ"), slow("figures/figure_1.pdf"), "paper/values.json"]
 )
 def test_the_paper_quotes_nothing_damaged(finished, name):
     """One digit or byte of what it includes is another."""

@@ -26,6 +26,7 @@ def can_mount():
         return False
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not can_mount(), reason="needs unshare and user namespaces to mount a disk")
 def test_full_disk(repository):
     """The results lie on a disk that is too small, and then on a larger one."""
@@ -51,6 +52,7 @@ def test_full_disk(repository):
         assert (large / "figures" / name).read_bytes() == (small / "figures" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_killed_job(repository):
     """What killed it is not known, but what usually does is named; the next run completes."""
     script = repository.folder / "workflow" / "scripts" / "rheology" / "figure_1.py"

@@ -129,6 +129,7 @@ def test_a_named_target_does_its_own_work_only(repository, target, jobs):
     assert repository.jobs(target) == jobs
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_is_resumed_to_the_same_bytes(smoke_run):
     """A lost shard, and what was made of it, come back as they were."""
     lost = [

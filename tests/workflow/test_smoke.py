@@ -157,6 +157,7 @@ def test_one_core_gives_the_same_bytes_as_two(smoke_run):
     assert compared >= 21
 
 
+@pytest.mark.slow
 def test_typesetting_again_gives_the_same_bytes(smoke_run):
     """The paper and what it quotes hold no clock time."""
     paths = [smoke_run.folder / RESULTS / name for name in ("paper.pdf", "paper/values.json")]
@@ -174,6 +175,7 @@ def test_second_run_has_nothing_to_do(smoke_run):
     assert "Nothing to be done" in run.stdout + run.stderr
 
 
+@pytest.mark.slow
 def test_progress_is_visible(repository):
     """What runs, and how far it is; the default profile says with how many cores."""
     run = repository.snakemake("--", "figure_1")

@@ -37,6 +37,7 @@ def again(repository):
     )
 
 
+@pytest.mark.slow
 def test_a_killed_run_is_taken_up(locked):
     """Its locks refuse the next run; they are removed, and it completes."""
     repository, run = locked
@@ -50,6 +51,7 @@ def test_a_killed_run_is_taken_up(locked):
     assert (repository.folder / "results/figures/figure_1.pdf").read_bytes().startswith(b"%PDF")
 
 
+@pytest.mark.slow
 def test_a_run_that_is_alive_keeps_its_locks(locked):
     """It is found by its folder, even if it does nothing; another folder's runs do not matter."""
     repository, run = locked

@@ -23,6 +23,7 @@ def test_asymptotic_method_is_the_limit():
     assert float(one_sided["probability"][0]) == pytest.approx(exact, abs=1e-13)
 
 
+@pytest.mark.slow
 def test_errors_mean_the_same_for_every_method():
     """The error bounds the distance; that of Monte Carlo times 5 (a false alarm in 10^5)."""
     exact = ns.crossing_probability(FRICTION, 0.6, HORIZONS, p=2.0, method="deterministic")

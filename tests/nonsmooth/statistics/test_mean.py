@@ -70,7 +70,7 @@ def test_rigid_obstacles():
     assert abs(found.value - 1 / 3) <= found.error <= 1e-4
 
 
-@pytest.mark.parametrize("noise", ["white", "langevin"])
+@pytest.mark.parametrize("noise", ["white", pytest.param("langevin", marks=pytest.mark.slow)])
 def test_linear_scenes(noise):
     """d(x y)/dt = y^2 + x y' and E[x y] = 0, so that E[y^2 + x (N - U')] = 0."""
     parameters = random_linear(np.random.default_rng(7), noise)

@@ -127,6 +127,7 @@ class TestReferences:
 class TestPathwise:
     """The same path with different steps."""
 
+    @pytest.mark.slow
     def test_coarse_increments_are_the_fine_ones(self):
         """Without friction the velocity is the Gaussian step, exact with every step."""
         paths = BrownianPaths(ns.Scene("friction", n=1e-9), 1.0, 8, 10, 1)

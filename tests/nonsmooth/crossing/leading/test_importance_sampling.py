@@ -41,7 +41,7 @@ def distance(found, exact):
 @pytest.mark.parametrize(
     ("threshold", "horizon", "p"),
     [
-        ((-np.inf, 0.6), 2.0, 10.0),  # W = 1.8e-1
+        pytest.param((-np.inf, 0.6), 2.0, 10.0, marks=pytest.mark.slow),  # W = 1.8e-1
         (1.5, 2.0, 10.0),  # 7.3e-3
         ((-2.5, 2.0), 2.0, 10.0),  # unequal levels, 2.6e-4
         ((-np.inf, 4.0), 2.0, 10.0),  # 5e-10
