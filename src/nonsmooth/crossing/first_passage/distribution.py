@@ -123,7 +123,7 @@ def _one_in_plane(scene, lower, upper, times, tol):
     """Solve for two state variables: early times by steps, later ones by contours.
 
     Contours grow accurate with time, steps become many. In between, steps are tried where contours
-    miss the tolerance.
+    miss the tolerance, and contours once more for the times that are left.
     """
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
     reasons = []
@@ -143,12 +143,15 @@ def _one_in_plane(scene, lower, upper, times, tol):
         solution[:, chosen], error[:, chosen] = found[:, better], stated[:, better]
 
     settings, relaxations = tuning.TIME_STEPPING, times * scene.damping
-    early = relaxations <= settings.until
+    early, late = relaxations <= settings.until, relaxations > settings.latest
     solve(early, tuning.STEPPED_PARTS, stepped)
-    solve(np.isinf(error[0]), tuning.PLANE_PARTS, inverted)  # slabs are stable on more grids
+    by_slabs = np.isinf(error[0])  # they are stable on more grids than steps
+    solve(by_slabs, tuning.PLANE_PARTS, inverted)
     missed = np.any(error > tol, axis=0)
-    if missed.any() and not missed[early].any() and relaxations[missed][-1] <= settings.latest:
-        solve(missed, tuning.STEPPED_PARTS, stepped)
+    if not missed[early].any():
+        solve(missed & ~late, tuning.STEPPED_PARTS, stepped)
+        if np.sum(missed & late) < np.sum(by_slabs):  # without the times that are worst
+            solve(missed & late, tuning.PLANE_PARTS, inverted)
     if np.isinf(error).any():
         raise ToleranceError(f"{reasons[-1]}; use method='monte_carlo'")
     return _answer(PlaneProblem(scene, lower, upper, times), times, solution, error, tol)

@@ -238,7 +238,7 @@ class TimeStepping:
     """Steps in time of two state variables."""
 
     until: float = 10.0  # chosen: last time, in relaxation times; later the transform is tame
-    latest: float = 25.0  # chosen: last time where contours miss the tolerance
+    latest: float = 40.0  # chosen: last time where contours miss the tolerance
     ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x
     # chosen: polynomial degree in x; the smallest element over the lesser of the distance to the
     # threshold and of the way that int g goes in a relaxation time; the largest over the distance

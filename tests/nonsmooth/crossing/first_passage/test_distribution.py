@@ -102,7 +102,7 @@ class TestWhereSlabsFail:
         assert np.all(np.abs(by_steps["probability"] - by_slabs["probability"]) <= allowed)
 
     def test_too_late_for_steps(self):
-        """Thirty relaxation times are more than steps are tried for."""
-        levels, times = np.array([[-1.0, 1.0]]), np.array([30.0])
+        """Fifty relaxation times are more than steps are tried for."""
+        levels, times = np.array([[-1.0, 1.0]]), np.array([50.0])
         with pytest.raises(ToleranceError, match="amplify; use method='monte_carlo'"):
             deterministic_crossing(COLORED_FRICTION, levels, times, 1e-3)
