@@ -30,6 +30,7 @@ SMALLEST, LARGEST = 1e-30, 1e30
 PARAMETERS = 1e-9, 1e9
 # the limits n -> 0 and n -> inf, up to rounding
 PENALIZATIONS = 1e-15, 1e15
+LONGEST = 5_000  # longest list of times, thresholds or probabilities; more take memory and minutes
 NO_OTHERS: Mapping[str, str] = {}
 
 
@@ -158,6 +159,8 @@ def require_list(name: str, values: Any) -> np.ndarray:
     found = require_numbers(name, values)
     if found.ndim > 1 or found.size == 0:
         _refuse(name, values, "give one number or a list of them")
+    if found.size > LONGEST:
+        raise SceneError(f"{name} has {found.size} numbers; give at most {LONGEST}")
     if not np.all(np.isfinite(found)):
         _refuse(name, values, "give finite numbers")
     return np.atleast_1d(found)

@@ -15,7 +15,10 @@ SOURCES = {
     *("node_modules", "build", "dist"),
 }
 # what the operating system holds
-SYSTEM = {"bin", "boot", "dev", "etc", "lib", "lib64", "proc", "sbin", "sys", "usr"}
+SYSTEM = {
+    *("bin", "boot", "dev", "etc", "lib", "lib32", "lib64", "proc", "run", "sbin", "sys", "usr"),
+    *("opt", "var"),
+}
 # folders of the results that belong to rules
 GENERATED = {"figures", "tables", "logs", "benchmarks"} | {
     path.stem for path in Path(__file__).parents[1].glob("rules/*.smk")
@@ -52,7 +55,7 @@ def _place(name, text):
     """Return the place that a path leads to, through links, if it is spelt plainly."""
     if not text.strip() or text != text.strip():
         raise _refused(name, text, "is blank, or begins or ends so; choose a path without")
-    if odd := next((c for c in text if not c.isprintable() or c in "{}<>\\"), None):
+    if odd := next((c for c in text if not c.isprintable() or c in "{}<>\\*?$"), None):
         raise _refused(name, text, f"has the character {odd!r}; choose a path without it")
     if text.startswith("~") or "://" in text:
         raise _refused(name, text, "is not a path of this machine; write it in full")
@@ -73,8 +76,12 @@ def _require_own(name, text, place):
     """Refuse places where sources are, or that hold everything."""
     if place in (ROOT, *ROOT.parents, Path.home()):
         raise _refused(name, text, "holds other files than results; choose a folder below it")
+    if place.parent == Path(place.anchor):
+        raise _refused(name, text, "lies at the top of the file system; choose a folder below it")
     if SYSTEM.intersection(place.parts[1:2]) and place.parts[1:3] != ("dev", "shm"):
         raise _refused(name, text, "is a folder of the operating system; choose another")
+    if ".git" in place.parts:
+        raise _refused(name, text, "lies in a repository's .git; choose another")
     # where it is, and where it seems to be
     for path in (place, Path(os.path.normpath(ROOT / text))):
         if path.is_relative_to(ROOT):

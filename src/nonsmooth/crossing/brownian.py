@@ -11,6 +11,7 @@ near >= sqrt(T), because nothing cancels there, or where L >= 10 sqrt(T), becaus
 below rounding there. The modes are used elsewhere; all terms that matter have the same sign there.
 """
 
+import math
 from collections.abc import Callable
 from functools import wraps
 from typing import TypeVar
@@ -28,6 +29,7 @@ from nonsmooth.scenes.thresholds import bounds
 Function = TypeVar("Function", bound=Callable)
 _SIZES = 1e-75, 1e75  # the fourth power of what is between is in double precision
 _TIMES = 1e-300, 1e75  # levels further than some roots of T are cut, so that T may be smaller
+_MOST_VALUES = 10**7  # take seconds, and a gigabyte
 
 
 def _keeping_coordinates(title: str) -> Callable[[Function], Function]:
@@ -195,6 +197,9 @@ class _Path:
         b, T = require_numbers("b", b, *_SIZES), require_numbers("T", T, *_TIMES)
         lower = -b if lower is None else require_numbers("lower", lower, *_SIZES)
         try:
+            size = math.prod(np.broadcast_shapes(b.shape, lower.shape, T.shape))
+            if size > _MOST_VALUES:
+                raise SceneError(f"b and T make {size} values; ask for at most {_MOST_VALUES}")
             b, lower, T = np.broadcast_arrays(b, lower, T)
         except ValueError:
             raise SceneError(

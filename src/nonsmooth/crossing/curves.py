@@ -21,6 +21,7 @@ _TITLES = {
     "step_bias_error": "standard error of the bias",
     "effective_sample_size": "effective number of the paths that cross",
 }
+_BETWEEN_0_AND_1 = "probability_error", "survival_error"
 
 
 def curves(
@@ -49,12 +50,13 @@ def curves(
     -------
     xarray.Dataset
     """
-    value, error = values["probability"], values["probability_error"]
+    # whatever a method states, a probability is between 0 and 1
+    capped = {name: np.minimum(values[name], 1.0) for name in _BETWEEN_0_AND_1 if name in values}
+    value, error = values["probability"], capped["probability_error"]
     limits = {"lower": np.maximum(value - error, 0), "upper": np.minimum(value + error, 1)}
     dimensions = ("horizon",) if levels is None else ("threshold", "horizon")
-    variables = {
-        name: (dimensions, own, _TITLES[name]) for name, own in (limits | dict(values)).items()
-    }
+    every = limits | dict(values) | capped
+    variables = {name: (dimensions, own, _TITLES[name]) for name, own in every.items()}
     return dataset(
         {"horizon": ("horizon", horizons, "horizon T")} | dict(levels or {}),
         variables,

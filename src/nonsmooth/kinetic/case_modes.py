@@ -131,6 +131,8 @@ def _of_all(grid, resolvent, balance):
     vectors = np.sqrt(grid.masses[moving])[:, None] * vectors
     up = grid.g[moving] > 0
     decay = rates.real > 0
+    if np.sum(decay) != np.sum(up):
+        raise np.linalg.LinAlgError("the modes of both walls are not told apart")
 
     def decaying(chosen, rates, leaves):
         return Modes(

@@ -16,6 +16,7 @@ import mpmath
 import numpy as np
 import sympy
 
+from nonsmooth.errors import SceneError, quoted
 from nonsmooth.line import tuning
 from nonsmooth.line.gauss_elements import MODES, POINTS, SLOPES, WEIGHTS, GaussElements
 from nonsmooth.scenes import symbols
@@ -142,6 +143,11 @@ def formula_error(varying: sympy.Expr, solution: PoissonIntegrals) -> np.ndarray
     Returns
     -------
     numpy.ndarray, shape (k, POINTS)
+
+    Raises
+    ------
+    SceneError
+        If a part of the formula is too large for any number of digits.
     """
     e = solution.elements
     slope = e.g @ SLOPES.T / e.half
@@ -150,9 +156,15 @@ def formula_error(varying: sympy.Expr, solution: PoissonIntegrals) -> np.ndarray
     chosen = np.argsort(weight)[-tuning.QUADRATURE.sampled :]
     exact = sympy.lambdify(symbols.y, varying, "mpmath")
     with mpmath.workdps(tuning.QUADRATURE.digits):
-        for k in chosen:
-            error[k] += max(
-                abs(float(exact(mpmath.mpf(e.points[k, i])) - e.g[k, i]))
-                for i in (1, POINTS // 2, POINTS - 2)
-            )
+        try:
+            for k in chosen:
+                error[k] += max(
+                    abs(float(exact(mpmath.mpf(e.points[k, i])) - e.g[k, i]))
+                    for i in (1, POINTS // 2, POINTS - 2)
+                )
+        except (ArithmeticError, ValueError):  # an intermediate result that is too large
+            raise SceneError(
+                f"g = {quoted(varying)} is too steep to be evaluated with "
+                f"{tuning.QUADRATURE.digits} digits; choose a g that grows less"
+            ) from None
     return error

@@ -83,6 +83,8 @@ def _dataset(result):
         result = result.to_dataset(name=result.name or "values")
     if not isinstance(result, xr.Dataset):
         raise _no_result(result)
+    if not all(variable.dtype.kind in "iuf" for variable in result.data_vars.values()):
+        raise _no_result(result)
     return result
 
 
@@ -186,7 +188,7 @@ def _draw_numbers(panel, found, name):
     places = list(found) if numbers else range(len(found))
     values = [data[name] for data in found.values()]
     limits = [_limits(data, data[name]) or (data[name],) * 2 for data in found.values()]
-    bars = np.abs([[float(end) for end in ends] for ends in limits] - np.reshape(values, (-1, 1)))
+    bars = np.abs([np.ravel(ends) for ends in limits] - np.reshape(values, (-1, 1)))
     panel.errorbar(
         places,
         np.ravel(values),

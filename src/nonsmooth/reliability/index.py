@@ -38,7 +38,11 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
     W, error, lower, upper = (crossing[name] for name in _NEEDED)
     if not W.size:
         raise SceneError("crossing has no probabilities; give what crossing_probability returned")
-    if not all((part.values >= 0).all() and (part.values <= 1).all() for part in (W, lower, upper)):
+    probabilities = W, lower, upper
+    numbers = all(part.dtype.kind in "iuf" for part in (*probabilities, error))
+    if not numbers or not all(
+        (part.values >= 0).all() and (part.values <= 1).all() for part in probabilities
+    ):
         raise SceneError(
             "crossing has numbers that are no probabilities; give what crossing_probability "
             "returned, unchanged"

@@ -194,8 +194,11 @@ def failure_time(
 
 def _probabilities(values):
     found = require_list("probability", values)
-    if not np.all((found > 0) & (found < 1)):
-        raise SceneError(f"probability is {quoted(values)}; give numbers between 0 and 1")
+    if not np.all((found > 0) & (found <= 1 - tuning.SEARCH.surest)):
+        raise SceneError(
+            f"probability is {quoted(values)}; give numbers between 0 and 1, at most "
+            f"1 - {tuning.SEARCH.surest:g}"
+        )
     return found
 
 

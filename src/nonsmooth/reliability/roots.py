@@ -95,14 +95,17 @@ def _secant(evaluate, target, guess, sense):
     """Return x, d logit W / d log x there, W and its error."""
     search, wanted = tuning.SEARCH, logit(target)
     place, slope = np.log(guess), 2.0 * sense
-    left, right, before = -np.inf, np.inf, None
+    left, right, before, distance = -np.inf, np.inf, None, np.inf
     for _ in range(search.most):
         W, error = (float(part[0]) for part in evaluate(np.exp([place]))[:2])
         gap = sense * (logit(np.clip(W, 1e-300, 1 - 1e-16)) - wanted)
         if before is not None and 0 < W < 1:
             found = (gap - before[1]) / (place - before[0]) if place != before[0] else 0.0
             slope = sense * found if 0 < found < np.inf else slope
-        if abs(W - target) <= search.close * error or right - left <= search.rounding:
+        distance, last = abs(W - target), distance
+        if distance <= search.close * error or right - left <= search.rounding:
+            break
+        if distance <= error and distance > search.falls * last:
             break
         left, right = (left, place) if gap > 0 else (place, right)
         before = (place, gap) if 0 < W < 1 else None

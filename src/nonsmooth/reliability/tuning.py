@@ -17,8 +17,10 @@ class Search:
     """The search of a root of W."""
 
     share: float = 0.1  # chosen: of P and of 1 - P, the largest error of W unless tol is given
+    surest: float = 1e-9  # chosen: least distance of P from 1; nearer ones are not told apart
     farthest: float = 2.0  # chosen: largest factor of one step of the secant method
     close: float = 0.1  # chosen: distance of W from P, over the error of W, at which it ends
+    falls: float = 0.5  # chosen: within the error it ends once the distance falls by less
     rounding: float = 1e-12  # derived: relative distance of roots that rounding cannot tell apart
     most: int = 30  # chosen: a bisection from a factor of 2 has 1e-9 then
     margin: float = 1.2  # chosen: of the first limits, over what the slope at the root tells

@@ -57,7 +57,8 @@ def read(path: str | Path) -> dict[str, Any]:
             f"line {number}: a character that YAML does not allow; delete it", path
         ) from None
     except (ValueError, OverflowError) as error:
-        raise ConfigError(f"has a value that cannot be read ({error}); mend it", path) from None
+        told = str(error).partition(";")[0]  # the rest is advice to programmers
+        raise ConfigError(f"has a value that cannot be read ({told}); mend it", path) from None
     except RecursionError:
         raise ConfigError("is nested too deeply; write it as config.yaml is", path) from None
 

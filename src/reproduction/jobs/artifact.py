@@ -118,9 +118,14 @@ def read(path: str | Path) -> xr.Dataset:
         raise ArtifactError(f"{path} is truncated, changed, or no artifact: no checksum; {again}")
     if digest != _digest(content):
         raise ArtifactError(f"{path} is damaged: its checksum does not fit; {again}")
-    dataset = xr.load_dataset(content, engine="netcdf4", decode_times=False)
+    try:
+        dataset = xr.load_dataset(content, engine="netcdf4", decode_times=False)
+    except (OSError, ValueError) as error:
+        raise ArtifactError(f"{path} is no netCDF file ({error}); {again}") from None
     flaw = _flaw(dataset)
-    if dataset.attrs["id"] != _identity(path):
+    if "id" not in dataset.attrs:
+        flaw = "it has no id, so that it is no artifact"
+    elif dataset.attrs["id"] != _identity(path):
         flaw = f"it is {dataset.attrs['id']}.nc under another name"
     if flaw:
         raise ArtifactError(f"{path}: {flaw}; {again}")
@@ -152,6 +157,10 @@ def _identity(path):
     return f"{path.parent.name}/{path.stem}"
 
 
+def _is_text(variable):
+    return variable.dtype.kind == "O" and all(isinstance(v, str) for v in variable.values.flat)
+
+
 def _flaw(dataset):
     """Say what an artifact must not have, or nothing."""
     for name, variable in dataset.variables.items():
@@ -159,6 +168,11 @@ def _flaw(dataset):
         bad = np.isnan if infinite else lambda values: ~np.isfinite(values)
         if not {"long_name", "units"} <= variable.attrs.keys():
             return f"variable {name!r} has no long_name or units"
+        if variable.dtype.kind not in "biufSUT" and not _is_text(variable):
+            return f"variable {name!r} is neither numbers nor texts"
+        is_error = str(name).endswith("_error") and variable.dtype.kind == "f"
+        if is_error and np.any(variable.values < 0):
+            return f"variable {name!r} is negative"
         if variable.dtype.kind == "f" and np.any(bad(variable.values)):
             return f"variable {name!r} is not finite"
         error = dataset.variables.get(f"{name}_error")

@@ -72,7 +72,9 @@ def deterministic_crossing(
         )
     tol = default_tolerance(scene) if tol is None else tol
     try:
-        return one_by_one(solvers(scene, intervals, times, tol))
+        # on coarse grids of extreme scenes; the error tells what comes of it
+        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+            return one_by_one(solvers(scene, intervals, times, tol))
     except (np.linalg.LinAlgError, RuntimeError) as error:  # from dense and from sparse matrices
         raise ToleranceError(
             f"the modes of the transport equation are not finite, as where g has a pole ({error}); "
@@ -238,6 +240,7 @@ def refined(
 
 def _answer(problem, times, solution, error, tol):
     """Return what was found, or raise an error with it."""
+    error = np.minimum(error, 1.0)
     found = {
         "probability": solution[0],
         "probability_error": error[0],
