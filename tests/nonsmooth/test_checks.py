@@ -30,6 +30,13 @@ def test_what_is_no_positive_number(value):
         checks.require_positive("a", value)
 
 
+def test_lists_end():
+    """Longer ones take memory and minutes."""
+    assert len(checks.require_list("a", np.ones(checks.LONGEST))) == checks.LONGEST
+    with pytest.raises(SceneError, match="a has 5001 numbers; give at most 5000"):
+        checks.require_list("a", np.ones(checks.LONGEST + 1))
+
+
 @pytest.mark.parametrize("value", [*NO_NUMBERS, 0, -1, 1.5])
 def test_what_is_no_count(value):
     """Counts are whole and positive."""

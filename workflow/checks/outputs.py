@@ -15,10 +15,9 @@ SOURCES = {
     *("node_modules", "build", "dist"),
 }
 # what the operating system holds
-SYSTEM = {
-    *("bin", "boot", "dev", "etc", "lib", "lib32", "lib64", "proc", "run", "sbin", "sys", "usr"),
-    *("opt", "var"),
-}
+SYSTEM = {"bin", "boot", "dev", "etc", "lib", "lib32", "lib64", "proc", "sbin", "sys", "usr"}
+# what holds the folders of many
+SHARED = {Path("/") / name for name in ("home", "media", "mnt", "opt", "run", "srv", "tmp", "var")}
 # folders of the results that belong to rules
 GENERATED = {"figures", "tables", "logs", "benchmarks"} | {
     path.stem for path in Path(__file__).parents[1].glob("rules/*.smk")
@@ -74,10 +73,8 @@ def _place(name, text):
 
 def _require_own(name, text, place):
     """Refuse places where sources are, or that hold everything."""
-    if place in (ROOT, *ROOT.parents, Path.home()):
+    if place in (ROOT, *ROOT.parents, Path.home(), *SHARED):
         raise _refused(name, text, "holds other files than results; choose a folder below it")
-    if place.parent == Path(place.anchor):
-        raise _refused(name, text, "lies at the top of the file system; choose a folder below it")
     if SYSTEM.intersection(place.parts[1:2]) and place.parts[1:3] != ("dev", "shm"):
         raise _refused(name, text, "is a folder of the operating system; choose another")
     if ".git" in place.parts:

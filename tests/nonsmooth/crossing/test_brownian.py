@@ -131,6 +131,7 @@ def test_broadcasts_and_mirrors():
         ((np.nan, 1.0), "b is nan"),
         ((1.0, 5e-324), "T is 5e-324; give numbers of sizes"),
         (([1.0, 2.0], [1.0, 2.0, 3.0]), "shapes that broadcast"),
+        ((np.ones((10**5, 1)), np.ones(10**5)), "make 10000000000 values"),
     ],
 )
 def test_levels_on_the_wrong_side_are_refused(arguments, cure):

@@ -6,7 +6,7 @@ from scipy import special
 
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import line
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
 from nonsmooth.kinetic import case_modes
 from references import FRICTION, GAMMA2, SKEWED, W_STAR
 
@@ -223,3 +223,18 @@ def test_what_misses_its_tolerance_is_told_with_all_thresholds():
     with pytest.raises(ToleranceError, match=r"above tol = 0\.001") as refused:
         ns.crossing_probability(FRICTION, [0.05, 5.0], **asked)
     assert dict(refused.value.result.sizes) == {"threshold": 2, "horizon": 1}
+
+
+def test_no_error_of_a_probability_is_above_one():
+    """Whatever a method finds, that much is known."""
+    with pytest.warns(AccuracyWarning):
+        found = ns.crossing_probability(ns.Scene("friction"), 0.5, [1.0], p=1e30)
+    assert found.probability_error.max() <= 1
+    assert found.survival_error.max() <= 1
+
+
+def test_a_pole_of_g_is_told():
+    """Its modes cannot be told apart."""
+    scene = ns.Scene("friction", observable="1/(y**2 + 1e-12)")
+    with pytest.raises(ns.NonsmoothError, match="Monte Carlo"):
+        ns.crossing_probability(scene, 0.5, [1.0])

@@ -85,8 +85,18 @@ def test_what_is_no_result_is_refused():
     for wrong in (3.0, "friction", {}, {"a": 1}, FRICTION, [1, 2]):
         with pytest.raises(SceneError, match="give what a function of nonsmooth returns"):
             ns.plot(wrong)
+    found = ns.crossing_probability(FRICTION, 0.5, [1.0, 2.0], method="asymptotic")
+    with pytest.raises(SceneError, match="give what a function of nonsmooth returns"):
+        ns.plot(found.astype(object))
     with pytest.raises(SceneError, match="isel"):
         ns.plot(xr.DataArray(np.zeros((2, 3, 4)), dims=("x", "y", "z")))
+
+
+def test_one_point_of_a_curve_is_a_number():
+    """Also where the dimension is kept."""
+    found = ns.crossing_probability(FRICTION, 0.5, [1.0, 2.0], method="asymptotic")
+    (panel,) = ns.plot(found.probability.isel(horizon=[0])).values()
+    assert len(panel.lines) > 0
 
 
 def test_nothing_else_imports_matplotlib():

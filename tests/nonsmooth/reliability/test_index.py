@@ -56,3 +56,11 @@ def test_numbers_that_are_no_probabilities_are_refused(factor):
     crossing = ns.crossing_probability(ns.Scene("friction"), 0.5, [1.0], method="asymptotic")
     with pytest.raises(SceneError, match="no probabilities"):
         ns.reliability_index(crossing * factor)
+
+
+@pytest.mark.parametrize("kind", [str, complex, object])
+def test_what_is_no_number_is_refused(kind):
+    """Texts, complex numbers, objects."""
+    crossing = ns.crossing_probability(ns.Scene("friction"), 0.5, [1.0], method="asymptotic")
+    with pytest.raises(SceneError, match="no probabilities"):
+        ns.reliability_index(crossing.astype(kind))

@@ -64,6 +64,15 @@ def test_obstacles_with_white_noise(seed):
     assert abs(loose.value - exact) <= loose.error <= 1e-2
 
 
+@pytest.mark.parametrize("g", ["tanh(exp(exp(exp(y))))", "exp(-exp(exp(exp(y))))"])
+def test_what_no_number_of_digits_holds_is_refused(g):
+    """Between its parts a formula may exceed all numbers."""
+    scene = ns.Scene("friction", observable=g)
+    for ask in (ns.mean, ns.asymptotic_variance):
+        with pytest.raises(ns.NonsmoothError, match="too steep to be evaluated with 40 digits"):
+            ask(scene)
+
+
 def test_rigid_obstacles():
     """Between rigid walls without a potential x is uniform: E x^2 = 1/3."""
     found = ns.mean(ns.Scene("obstacle", n=math.inf, observable="x**2"), tol=1e-4)

@@ -65,6 +65,33 @@ def test_values_that_are_not_finite_are_refused(tmp_path, bad):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda data: data.assign(q_error=-data["q_error"] - 1), "'q_error' is negative"),
+        (lambda data: data.assign(q=data["q"] * 1j), "'q' is neither numbers nor texts"),
+    ],
+)
+def test_nonsense_is_not_written(tmp_path, change, message):
+    """Errors are not negative, and values real."""
+    data = example()
+    changed = change(data)
+    for name in data.variables:
+        changed[name].attrs = data[name].attrs
+    with pytest.raises(ArtifactError, match=message):
+        artifact.write(changed, tmp_path / "x.nc", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("content", [b"no netCDF", b"\x89HDF\r\n\x1a\n" + bytes(200)])
+def test_what_others_have_signed_is_refused(tmp_path, content):
+    """A valid checksum makes no artifact of it."""
+    digest = hashlib.sha256(content).hexdigest().encode()
+    (tmp_path / "x.nc").write_bytes(content + b"\nnonsmooth sha256 %s\n" % digest)
+    with pytest.raises(ArtifactError, match="is no netCDF file"):
+        artifact.read(tmp_path / "x.nc")
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_values_may_be_infinite_where_that_is_explained(tmp_path, bad):
     """By an attribute, which is kept; NaN is nothing."""

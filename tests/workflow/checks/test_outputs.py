@@ -44,6 +44,21 @@ def test_bad_outputs_without_git(root, key, value):
 
 
 @pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("results", "../another/.git"),
+        ("paper", "../another/.git/paper.pdf"),
+        ("results", "/mnt"),
+        ("results", "/lib32/x"),
+        ("paper", "*.pdf"),
+    ],
+)
+def test_outputs_in_what_is_not_ours(root, key, value):
+    """In the records of another repository, in what many share, in what a shell would expand."""
+    assert f"'outputs.{key}'" in refused({key: value})
+
+
+@pytest.mark.parametrize(
     "changes",
     [
         {},
