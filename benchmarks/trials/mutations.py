@@ -91,6 +91,7 @@ BROKEN_TEXTS = {
     "YAML: impossible date": b"seed: 2026-13-45\n",
     "YAML: indentation": b"crossing:\n  paths: 100\n    shard: 1\n",
     "YAML: zeros": b"\0" * 100,
+    "YAML: number of 5000 digits": b"seed: " + b"9" * 5000 + b"\n",
     "YAML: key that is a number": b"1: 2\n",
 }
 
@@ -358,6 +359,8 @@ MISFITS = [
     ("scene", ("gamma2", "scenes"), ["no_such_scene"]),
     ("scene", ("density", "scenes"), ["no_such_scene"]),
     ("scene", ("limit_theorem", "scenes"), ["friction"]),
+    ("scene", ("rare_crossings", "thresholds", "no_such_scene"), [1.0]),
+    ("scene", ("rates", "crossing", "smallest", "no_such_scene"), 4),
     ("scene", ("theorems", "ergodicity", "scenes"), ["obstacle_langevin"]),
     ("scene", ("rates", "crossing", "scenes"), ["obstacle_langevin"]),
     ("scene", ("rates", "crossing", "scenes"), ["friction_hamiltonian"]),

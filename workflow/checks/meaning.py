@@ -112,11 +112,13 @@ def _check_names(config):
         _check_known(config, (topic, "scenes"), simulated, "simulated ")
     of_rates = list(config["rates"]["scenes"])
     _check_known(config, ("rates", "crossing", "scenes"), of_rates, of="rates")
-    for topic, own in (
-        (("rare_crossings",), ["thresholds"]),
-        (("rates", "crossing"), ["thresholds", "smallest", "tolerances"]),
+    for topic, own, choice, of in (
+        (("rare_crossings",), ["thresholds"], known, "the sweep"),
+        (("rates", "crossing"), ["thresholds", "smallest", "tolerances"], of_rates, "rates"),
     ):
         section = _value(config, topic)
+        for key in own:
+            _check_known(config, (*topic, key), choice, of=of)
         for name, key in product(section["scenes"], own):
             if name not in section[key]:
                 problem = f"has {name!r}, which has no {dotted((*topic, key))}; add it there"
