@@ -131,8 +131,6 @@ def _of_all(grid, resolvent, balance):
     vectors = np.sqrt(grid.masses[moving])[:, None] * vectors
     up = grid.g[moving] > 0
     decay = rates.real > 0
-    if np.sum(decay) != np.sum(up):
-        raise np.linalg.LinAlgError("the modes of both walls are not told apart")
 
     def decaying(chosen, rates, leaves):
         return Modes(
@@ -220,6 +218,8 @@ class ModesOfWalls:
             leaves = grid.g[grid.moving] > 0
             right = np.zeros((len(weights), 2))
             many = len(above.rates)
+            if many != np.sum(leaves):  # as where g has a pole
+                raise np.linalg.LinAlgError("the modes of both walls are not told apart")
             right[:many, 0], right[many:, 1] = weights[leaves], weights[~leaves]
             strengths = np.linalg.solve(_at_both_walls(above, below, upper - lower), right)
         start = np.append(
