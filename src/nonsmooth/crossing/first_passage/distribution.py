@@ -128,7 +128,7 @@ def _one_in_plane(scene, lower, upper, times, tol):
     miss the tolerance, and contours once more for the times that are left.
     """
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
-    reasons = []
+    reasons = ["the solution is not finite"]
 
     def solve(here, parts, solver):
         """Solve at some of the times; keep what has a smaller error than what is known."""

@@ -106,3 +106,11 @@ class TestWhereSlabsFail:
         levels, times = np.array([[-1.0, 1.0]]), np.array([50.0])
         with pytest.raises(ToleranceError, match="amplify; use method='monte_carlo'"):
             deterministic_crossing(COLORED_FRICTION, levels, times, 1e-3)
+
+    def test_what_is_not_finite(self, monkeypatch):
+        """It is no answer."""
+        monkeypatch.setattr(
+            distribution, "inverted", lambda problem, times: lambda at: np.full((2, 1), np.nan)
+        )
+        with pytest.raises(ToleranceError, match="not finite; use method='monte_carlo'"):
+            deterministic_crossing(COLORED_FRICTION, np.array([[-1.0, 1.0]]), np.array([50.0]), 0.1)
