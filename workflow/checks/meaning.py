@@ -38,6 +38,7 @@ def check_meaning(config: dict) -> None:
         # before what compares sizes with each other, so that a huge one is to blame
         check_costs(config)
         _check_dry_friction(config)
+        _check_steps(config)
         _check_times(config)
         if not finite(config["convergence"]["n"]):
             raise _refused(config, ("convergence", "n"), "needs a finite n; add one")
@@ -165,6 +166,32 @@ def _check_increasing(config):
         numbers = _value(config, key)
         if sorted(numbers) != numbers:
             raise _refused(config, key, "must increase; sort them")
+
+
+def _check_steps(config):
+    """Refuse a time step above half of the time it divides: there would be no path to speak of."""
+    sweep = ("sweep", "scenes")
+    simulated = [(*sweep, name, "long_step") for name in config["sweep"]["scenes"]]
+    pairs = [
+        (("trajectories", "step"), ("trajectories", "horizon")),
+        (("variance", "monte_carlo", "step"), ("variance", "horizon")),
+        (("crossing", "step"), ("crossing", "horizon")),
+        (("sweep", "step"), ("sweep", "horizon")),
+        *((key, ("sweep", "variance", "times", 0)) for key in simulated),
+        (("gamma2", "potentials", "step"), ("gamma2", "potentials", "times", 0)),
+        (("density", "step"), ("density", "time")),
+        (("limit_theorem", "step"), ("limit_theorem", "p", 0)),
+        (("plasticity", "step"), ("plasticity", "duration")),
+        (("rates", "longest_step"), ("rates", "horizon")),
+        (("rates", "weak", "step"), ("rates", "weak", "horizon")),
+        (("speed_against_error", "gamma2", "step"), ("speed_against_error", "gamma2", "times", 0)),
+        (("speed_against_error", "rare", "step"), ("speed_against_error", "rare", "horizon")),
+    ]
+    for key, of in pairs:
+        time = _value(config, of)
+        if _value(config, key) > time / 2:
+            problem = f"is above half of {dotted(of)} = {time:g}; lower it"
+            raise _refused(config, key, problem, of)
 
 
 def _check_dry_friction(config):

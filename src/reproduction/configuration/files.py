@@ -116,7 +116,7 @@ def _inner(node):
 
 
 def _require_plain(node, path):
-    """Refuse tags, keys that are not texts, and keys that stand twice."""
+    """Refuse tags, keys that are no texts or stand twice, and numbers to bases other than ten."""
     line = node.start_mark.line + 1
     if not node.tag.startswith("tag:yaml.org,2002:") or "python" in node.tag:
         tag = node.tag.removeprefix("tag:yaml.org,2002:")[:40]
@@ -134,5 +134,17 @@ def _require_plain(node, path):
                     path,
                 )
             first[name] = number
+    if isinstance(node, yaml.ScalarNode) and _is_read_as_another_number(node):
+        number, told = node.start_mark.line + 1, node.value[:40]
+        raise ConfigError(f"line {number}: {told!r} is not a decimal number; write it as one", path)
     for inner in _inner(node):
         _require_plain(inner, path)
+
+
+def _is_read_as_another_number(node):
+    """Whether YAML 1.1 takes a scalar as sexagesimal (1:30), octal (010), binary or hexadecimal."""
+    digits = node.value.lstrip("+-").replace("_", "")
+    octal = digits.isdecimal() and digits.startswith("0") and digits.strip("0") != ""
+    if node.tag == "tag:yaml.org,2002:int":
+        return octal or not digits.isdecimal()
+    return node.tag == "tag:yaml.org,2002:float" and ":" in digits
