@@ -56,7 +56,7 @@ class LayerConstants:
     @property
     def order(self) -> int:
         """The highest order of the corrected formula for which the known constants suffice."""
-        if self.dispersion is None or self.mean != 0:
+        if self.dipole is None or self.mean != 0:
             return 1
         return 2 if self.kappa3 is None else 3
 

@@ -13,13 +13,13 @@ from nonsmooth.statistics.asymptotic_variance import limit_variance
 
 def highest_order(scene: Scene) -> int:
     """Return the highest order of the corrected formula for which `layer_constants` suffices."""
-    if not scene.is_line:
-        return 1
-    return 3 if scene.is_odd() else 2
+    if scene.is_line and not scene.is_odd():
+        return 2
+    return 3 if scene.is_line or two_variables.applies(scene) else 1
 
 
 def solved_constants(
-    scene: Scene, tol: float | None = None
+    scene: Scene, tol: float | None = None, higher: bool = False
 ) -> tuple[LayerConstants, LayerConstants] | None:
     """Compute the constants without Monte Carlo.
 
@@ -28,6 +28,8 @@ def solved_constants(
     scene : Scene
     tol : float, optional
         Absolute error wanted, "1"; 1e-8 for one variable and 1e-3 for two, unless given.
+    higher : bool, optional
+        Whether the constants of the orders 2 and 3 are wanted even where they cost much more.
 
     Returns
     -------
@@ -44,7 +46,9 @@ def solved_constants(
     mean = mean_of_line(scene)
     if mean != 0:
         scene = scene.with_observable(f"{scene.observable} - ({mean!r})")
-    for method in (symmetric_line, asymmetric_line, two_variables):
+    if two_variables.applies(scene):
+        return two_variables.layer_constants(scene, tol, higher)
+    for method in (symmetric_line, asymmetric_line):
         if method.applies(scene):
             constants, errors = method.layer_constants(scene, tol)
             return replace(constants, mean=mean), errors
@@ -63,6 +67,7 @@ def layer_constants(
     seed: int | tuple = 0,
     threads: int | None = None,
     tol: float | None = None,
+    higher: bool = False,
 ) -> tuple[LayerConstants, LayerConstants]:
     """Compute the constants, by Monte Carlo where nothing else applies.
 
@@ -74,6 +79,8 @@ def layer_constants(
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
     tol : float, optional
         Absolute error wanted of kappa, as for `extrapolation_length`.
+    higher : bool, optional
+        As for `solved_constants`.
 
     Returns
     -------
@@ -84,7 +91,7 @@ def layer_constants(
     SceneError, ToleranceError
         As `extrapolation_length`.
     """
-    solved = solved_constants(scene, tol)
+    solved = solved_constants(scene, tol, higher)
     if solved is not None:
         return solved
     kappa = sampled_kappa(scene, tol, seed=labelled(seed, "length"), threads=threads)

@@ -27,6 +27,8 @@ class TwoVariables:
     # chosen: work for one combination, in units of the largest grid; bounds the time
     work: float = 3.0
     zero: float = 1e-13  # |g| up to this counts as 0, relative; derived: above rounding of g
+    # distance of a threshold over kappa; chosen: nearer, the orders 2 and 3 mean little
+    nearest: float = 3.0
     largest: int = 3000  # nodes with g != 0; chosen: half a minute of dense linear algebra
     gamma2: float = 1e-5  # relative error wanted of gamma^2; chosen: it costs less than the rest
     rounding: float = 1e-10  # chosen: relative, of the Poisson solution by sparse factors

@@ -1,7 +1,8 @@
 """Corrected asymptotic formulas for threshold crossing, with a bound of their error.
 
 The order k has an error of the order p^(-(k+1)/2); `expansion` has the formulas. Order 1 is for odd
-g, or for the state y with white noise; order 2 for the latter; order 3 for the latter with odd g.
+g, or for the state y with white noise; order 2 for the latter; order 3 for the latter with odd g,
+and for two variables with odd g and drift and a finite n, which have order 2, too.
 
 Let k now be the highest order that is known for the scene. The stated error of an order is its
 distance to the order k, plus the change of the order k when the time is multiplied or divided by
@@ -11,10 +12,11 @@ exp(R). R estimates the effect of the next order, k + 1, as a relative change of
 
 Here s^2 = |S| + |h - u^2/2| + |B|/D + (C/D)^2 is the size of the terms of order 2. The frequency z
 is the inverse of the time, plus the size of the logarithmic derivative of the rate of passage.
-Where order 2 is not known, s is the thickness m of the layer. With b the distance to the nearer
-threshold, (m/b) exp(-b/m) is added to R for the layer's effect at the start. Where the layer is so
-thick that order 1 replaces the others, R grows with m/b instead. R never exceeds a limit that
-grows with log(1 + 2 m/b). The numbers a and c are fitted, see `tuning`.
+Where S is not known, the square of m stands for it, m being the thickness of the layer; where none
+of these terms is known, s is m. With b the distance to the nearer threshold, (m/b) exp(-b/m) is
+added to R for the layer's effect at the start. Where the layer is so thick that order 1 replaces
+the others, R grows with m/b instead. R never exceeds a limit that grows with log(1 + 2 m/b). The
+numbers a and c are fitted, see `tuning`.
 
 With a drift, order 1 has the error W (exp(X) - 1) besides, see `drift`.
 
@@ -52,8 +54,8 @@ def corrected_crossing(
     Parameters
     ----------
     scene : Scene
-        With the state y and white noise; odd g for the order 3. For order 1 also two
-        variables with finite n and odd g, or any other with odd g.
+        With the state y and white noise; or with two variables, finite n, odd g and drift. Odd g
+        for the order 3; for the order 1 any scene with odd g.
     threshold : (float, float)
         lower < 0 < upper, one of them possibly infinite, "1".
     horizons : numpy.ndarray, shape (k,)
@@ -82,7 +84,7 @@ def corrected_crossing(
     """
     _require_order(scene, order)
     with of_another_quantity():
-        constants, errors = layer_constants(scene, seed, threads, accuracy)
+        constants, errors = layer_constants(scene, seed, threads, accuracy, order > 1)
     if order > 1 and constants.mean != 0:
         what = f"the corrected formula of order {order}"
         raise uncentred(what, scene, constants.mean, "use order=1")
@@ -111,7 +113,7 @@ def _require_order(scene, order):
     """Refuse an order that does not exist for this scene."""
     known = highest_order(scene)
     if order > known:
-        need = "the state (y) and white noise" if known == 1 else "odd g"
+        need = "odd g" if known == 2 else "one variable, or two with odd g and drift and finite n"
         raise SceneError(
             f"the corrected formula of order {order} needs {need}, not ({', '.join(scene.state)}) "
             f"with {scene.noise.title} and g = {quoted(scene.observable)}; use order={known} or "

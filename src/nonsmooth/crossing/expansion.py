@@ -87,13 +87,17 @@ class Expansion:
 
     @cached_property
     def second_order_scale(self) -> float:
-        """Displacement s whose square is the size of all terms of order 2; m if not known."""
+        """Displacement s whose square is the size of all terms of order 2; m if not known.
+
+        Where the dipole is not known, the square of m stands for it.
+        """
         c = self.constants
-        if c.order == 1 or c.dipole is None or c.h is None:
+        if c.h is None or c.mean != 0:
             return self.layer_thickness
-        dipole = max(abs(c.dipole[0]), abs(c.dipole[1]))
-        dispersion, skewness = self._memory()
-        return np.sqrt(dipole + abs(c.h - c.u**2 / 2) + dispersion + skewness)
+        start = abs(c.h - c.u**2 / 2)
+        if c.dipole is None:
+            return np.sqrt(self.layer_thickness**2 + start)
+        return np.sqrt(max(np.abs(c.dipole)) + start + sum(self._memory()))
 
     @cached_property
     def tilt(self) -> drift.Tilt:

@@ -99,8 +99,9 @@ def crossing_probability(
           It does not depend on p; its error does.
         - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
           order 1/p, p^(-3/2) or p^(-2). For the state y with white noise it has the orders 1 and
-          2, and 3 if g is odd; order 1 also if E g != 0, as with a small slope. Elsewhere it
-          needs odd g and has the order 1.
+          2, and 3 if g is odd; order 1 also if E g != 0, as with a small slope. Two variables at a
+          finite n have all three if g and the drift are odd. Elsewhere it needs odd g and has the
+          order 1.
     tol : float, optional
         Absolute error wanted. Unless given, it is 1e-2 for ``"monte_carlo"``, and 1e-7 for
         ``"deterministic"`` or 1e-4 with two variables; for ``"importance_sampling"`` a tenth of
@@ -263,7 +264,8 @@ def _attempts(scene, thresholds, horizons, p, given):
 def _asymptotic(scene, thresholds, horizons, p, seed, threads):
     """Evaluate W_star(b / gamma, T), which does not depend on p; the error does.
 
-    It is the distance to the corrected formula of the highest order, and the error of that.
+    It is the distance to the corrected formula, of the highest order in one variable, and the error
+    of that.
     """
     if scene.primitive_variable is not None:
         raise SceneError(
@@ -281,7 +283,7 @@ def _asymptotic(scene, thresholds, horizons, p, seed, threads):
         error = np.maximum(value, 1 - value)  # all that is known of a probability
         if highest_order(scene) > 1 or scene.is_odd():
             rough = None if scene.is_line else tuning.LIMIT_ERROR.kappa * np.sqrt(gamma2.value)
-            order = highest_order(scene)
+            order = highest_order(scene) if scene.is_line else 1
             with suppress(ToleranceError):  # kappa out of reach
                 nearer, rest = corrected_crossing(
                     scene, threshold, horizons, p, order, None, seed, threads, rough

@@ -13,21 +13,25 @@ import itertools
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import tuning
 from nonsmooth.progress import counter
 
 Index = tuple[int, ...]
+# one number, or several that share a tolerance
+Functional = float | np.ndarray
 
 
 def combined(
     lowest: Index,
-    evaluate: Callable[[Index], float],
+    evaluate: Callable[[Index], Functional],
     cost: Callable[[Index], float],
-    met: Callable[[float, float], bool],
+    met: Callable[[Functional, Functional], bool],
     work: float,
     mixed: float,
-) -> tuple[float, float, bool]:
+) -> tuple[Functional, Functional, bool]:
     """Add grids to a combination until its error is small enough.
 
     Parameters
@@ -48,7 +52,7 @@ def combined(
 
     Returns
     -------
-    value, error : float
+    value, error : float or numpy.ndarray
     complete : bool
         Whether no grid had to be left out because of a `ToleranceError`.
     """
@@ -88,7 +92,7 @@ class Combination:
     ----------
     lowest : tuple of int
         Level of each variable on the coarsest grid.
-    coarsest : float
+    coarsest : float or numpy.ndarray
         The functional there.
     evaluate : callable
         Takes an index to the functional on its grid.
@@ -100,24 +104,24 @@ class Combination:
 
     Attributes
     ----------
-    value : float
+    value : float or numpy.ndarray
         The functional.
     """
 
     def __init__(
         self,
         lowest: Index,
-        coarsest: float,
-        evaluate: Callable[[Index], float],
+        coarsest: Functional,
+        evaluate: Callable[[Index], Functional],
         cost: Callable[[Index], float],
         mixed: float = tuning.COMBINATION_TECHNIQUE.mixed,
     ):
         self._lowest, self._evaluate, self._cost = lowest, evaluate, cost
         self._mixed = mixed
-        self._values: dict[Index, float] = {}
-        self._surplus: dict[Index, float] = {}
-        self._missing: dict[Index, float] = {}
-        self.value = 0.0
+        self._values: dict[Index, Functional] = {}
+        self._surplus: dict[Index, Functional] = {}
+        self._missing: dict[Index, Functional] = {}
+        self.value: Functional = 0.0
         self._add(lowest, coarsest)
 
     def _add(self, index, functional):
@@ -127,7 +131,7 @@ class Combination:
             (-1) ** sum(step) * self._values[tuple(i - s for i, s in zip(index, step, strict=True))]
             for step in below
         )
-        self.value += self._surplus[index]
+        self.value = self.value + self._surplus[index]
         self._missing.pop(index, None)
         for k in self._axes:
             above = _moved(index, k, 1)
@@ -157,10 +161,10 @@ class Combination:
             before = self._parent(parent, k)
             if before is not None and before != self._lowest:
                 bounds.append(tuning.COMBINATION_TECHNIQUE.relapse * abs(self._surplus[before]))
-        return max(bounds) * (1.0 if len(raised) == 1 else self._mixed)
+        return np.max(bounds, axis=0) * (1.0 if len(raised) == 1 else self._mixed)
 
     @property
-    def error(self) -> float:
+    def error(self) -> Functional:
         """Estimated sum of the surpluses of all indices outside the set, by those next to it."""
         return sum(self._missing.values())
 
@@ -176,7 +180,9 @@ class Combination:
         within = [index for index in costs if costs[index] <= most]
         if not within:
             return 0.0
-        best = max(within, key=lambda index: (self._missing[index] / costs[index], -costs[index]))
+        best = max(
+            within, key=lambda index: (np.max(self._missing[index]) / costs[index], -costs[index])
+        )
         self._add(best, self._evaluate(best))
         return costs[best]
 

@@ -175,25 +175,48 @@ def test_orders_need_constants():
         ns.crossing_probability(SKEWED_AND_STARTED, 0.6, [1.0], method="corrected", order=3)
     with pytest.raises(ns.NonsmoothError, match="use order=1 or method='monte_carlo'"):
         ns.crossing_probability(
-            ns.Scene("friction", "langevin"), 0.6, [1.0], method="corrected", order=2
+            ns.Scene("friction", "langevin", n=np.inf), 0.6, [1.0], method="corrected", order=2
         )
     with pytest.raises(ns.NonsmoothError, match="order is 4; give at most 3"):
         ns.crossing_probability(FRICTION, 0.6, [1.0], method="corrected", order=4)
 
 
 @pytest.mark.slow
-def test_two_variables():
-    """With two variables Monte Carlo agrees, where the plain formula is off by 0.1.
+class TestTwoVariables:
+    """The generator is not self-adjoint."""
 
-    Within 4.5 standard errors and the error O(1/p) of the formula.
-    """
-    scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
-    problem = scene, 0.6, [2.0], 100
-    found = ns.crossing_probability(*problem, method="corrected")
-    sampled = ns.crossing_probability(*problem, step=0.1, paths=4000, seed=1)
-    sigma = np.hypot(sampled.standard_error, sampled.step_bias_error)
-    difference = found.probability - sampled.probability + sampled.step_bias
-    order = (0.42 / 0.6) ** 2 / 100  # (kappa / b)^2 / p
-    assert np.all(np.abs(difference) <= 4.5 * sigma + order)
-    with pytest.raises(ns.NonsmoothError, match="use order=1"):
-        ns.crossing_probability(*problem, method="corrected", order=2)
+    def test_against_the_solution(self):
+        """At p = 1000 order 3 is within the error of the solution, and order 1 is ten times off.
+
+        The error of order 2 is about eps = 1/20 of the distance that order 3 has to order 1.
+        """
+        scene = ns.Scene("friction", "langevin", n=5)
+        first, second, third = (
+            errors(0.4, 1000.0, scene, formula, tol=2e-5).max() for formula in ORDERS
+        )
+        assert first > 10 * 2e-5
+        assert second < first / 3
+        assert third < 2e-5 + second / 3
+        changes = []
+        for p in (1e4, 1e6):
+            values = [
+                ns.crossing_probability(scene, 0.4, HORIZONS, p, **formula).probability
+                for formula in ORDERS[1:]
+            ]
+            changes.append(float(np.abs(values[1] - values[0]).max()))
+        assert np.log10(changes[1] / changes[0]) / 2 == pytest.approx(-1.5, abs=0.1)
+
+    def test_against_monte_carlo(self):
+        """It agrees where the plain formula is off by 0.1.
+
+        Within 4.5 standard errors and the error of the formula, O(1/p) for order 1.
+        """
+        scene = ns.Scene("elasto_plastic", potential="x**2/2", observable="plastic_strain_rate")
+        problem = scene, 0.6, [2.0], 100
+        sampled = ns.crossing_probability(*problem, step=0.1, paths=4000, seed=1)
+        sigma = np.hypot(sampled.standard_error, sampled.step_bias_error)
+        for formula in (ORDERS[0], ORDERS[2]):
+            found = ns.crossing_probability(*problem, **formula)
+            difference = found.probability - sampled.probability + sampled.step_bias
+            order = ((0.42 / 0.6) ** 2 / 100) ** ((formula["order"] + 1) / 2)  # (kappa / b)^2 / p
+            assert np.all(np.abs(difference) <= 4.5 * sigma + order)
