@@ -186,17 +186,17 @@ class TestTwoVariables:
     """The generator is not self-adjoint."""
 
     def test_against_the_solution(self):
-        """At p = 1000 order 3 is within the error of the solution, and order 1 is ten times off.
+        """At p = 1000 order 3 is within the error of the solution, and order 1 is far off.
 
         The error of order 2 is about eps = 1/20 of the distance that order 3 has to order 1.
         """
         scene = ns.Scene("friction", "langevin", n=5)
         first, second, third = (
-            errors(0.4, 1000.0, scene, formula, tol=2e-5).max() for formula in ORDERS
+            errors(0.4, 1000.0, scene, formula, tol=5e-5).max() for formula in ORDERS
         )
-        assert first > 10 * 2e-5
+        assert first > 5 * 5e-5
         assert second < first / 3
-        assert third < 2e-5 + second / 3
+        assert third < 5e-5 + second / 3
         changes = []
         for p in (1e4, 1e6):
             values = [
