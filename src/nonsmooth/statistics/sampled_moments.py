@@ -20,7 +20,7 @@ from nonsmooth.statistics.sampled_gamma2 import sampled_mean
 def sampled_moments(
     scene: Scene,
     times: np.ndarray,
-    tol: float,
+    tol: float | None,
     seed: int | tuple = 0,
     threads: int | None = None,
     most: float = MONTE_CARLO.most_steps,
@@ -35,8 +35,8 @@ def sampled_moments(
     scene : Scene
     times : numpy.ndarray, shape (t,)
         Increasing and positive.
-    tol : float
-        Of v(tau)/tau, absolute.
+    tol : float or None
+        Of v(tau)/tau, absolute; if None, a share of the largest of them, `tuning.Variance.share`.
     seed : int or tuple
     threads : int, optional
     most : float
@@ -77,23 +77,25 @@ def sampled_moments(
         )
         error = np.max(bias + MONTE_CARLO.sigmas * np.hypot(own, spread))
         size = max(float(run["variance"][-1]) / times[-1], np.finfo(float).tiny)
+        largest = max(float(np.max(run["variance"].values / times)), np.finfo(float).tiny)
+        allowed = tuning.VARIANCE.share * largest if tol is None else tol
         rare = own[-1] / size / tuning.VARIANCE.resting
-        if error <= tol and rare <= 1:
+        if error <= allowed and rare <= 1:
             break
         deviation = math.sqrt(paths) * np.max(own)
         paths = max(
             paths,
-            paths_for(deviation, tol),
+            paths_for(deviation, allowed),
             math.ceil(paths * min(rare, tuning.VARIANCE.more) ** 2),
         )
-        step = refined_step(step, np.max(bias + spread), MONTE_CARLO.bias_aim * tol, order)
+        step = refined_step(step, np.max(bias + spread), MONTE_CARLO.bias_aim * allowed, order)
         try:
             require_possible(
                 paths,
                 times[-1] / step,
                 f"v(tau)/tau = {float(run['variance'][-1]) / times[-1]:.3g} at tau = "
                 f"{times[-1]:g} has an error of {error:.1g}",
-                tol,
+                allowed,
                 most,
             )
         except ToleranceError as refused:
@@ -114,7 +116,7 @@ def sampled_moments(
     if excessive:
         raise ToleranceError(excessive, found)
     bound = times * (bias + MONTE_CARLO.sigmas * np.hypot(own, spread))
-    require_accuracy(times, *found, bound, tol)
+    require_accuracy(times, *found, bound, allowed)
     return found
 
 

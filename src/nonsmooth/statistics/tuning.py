@@ -155,8 +155,13 @@ class SampledGamma2:
 class Variance:
     """Tolerances and resolutions of v(0, tau)."""
 
-    # chosen: absolute, of v(tau)/tau, for one and two state variables
+    # of v(tau)/tau for one and two state variables, unless asked: absolute, or relative to the
+    # largest of them if that is below 1; chosen: what takes seconds
     tolerance: tuple[float, ...] = (1e-9, 1e-5)
+    # chosen: smaller rates than this count as if they were so large
+    least: float = 1e-6
+    # chosen: by Monte Carlo three standard errors and the bias, relative to the largest v(tau)/tau
+    share: float = 0.05
     # chosen: polynomial degrees of the eigenfunctions, until two agree
     degrees: tuple[int, ...] = (4, 6, 8, 12, 16, 20, 24)
     # chosen: tolerances from this on are tried with the first of these degrees, others without the

@@ -18,7 +18,6 @@ from nonsmooth.checks import (
 from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.estimate import not_negative
 from nonsmooth.line import eigenfunctions
-from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.refine import until_agreement
 from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_scene
@@ -44,9 +43,10 @@ def variance(
     times : array_like, shape (t,)
         tau >= 0, "1"; by Monte Carlo increasing and positive.
     tol : float, optional
-        Requested absolute error of v(tau)/tau. Unless given, it is 1e-2 by Monte Carlo, and by the
-        deterministic method 1e-9 for one state variable and 1e-5 for two; what misses these is
-        returned with a warning.
+        Requested absolute error of v(tau)/tau. Unless given, it is a twentieth of the largest of
+        them by Monte Carlo, and by the deterministic method 1e-9 for one state variable and 1e-5
+        for two, times the largest of them if that is below 1; what misses these is returned with a
+        warning.
     method : {"deterministic", "monte_carlo"}, optional
         ``"deterministic"`` is possible for the state y with white noise, and for two state
         variables and a finite n. Unless a method is given, it is taken for these scenes, except
@@ -96,29 +96,41 @@ def variance(
             f"({', '.join(scene.state)}) with {scene.noise.title} at n = {scene.n:g}; use "
             "method='monte_carlo', which takes every scene"
         )
+    given = tol is not None
+    sample = partial(sampled_moments, scene, times, tol, seed, threads, envelope=envelope)
+
+    def answer(method, attempt):
+        return answered(attempt, lambda found: _dataset(times, *found, method), tol_given=given)
+
+    if method == "monte_carlo" or solve is None:
+        return answer("monte_carlo", sample)
     either = method is None and solve is moments_on_grids.moments
-    if either and tol is not None and times[0] > 0 and np.all(np.diff(times) > 0):
+    either = either and times[0] > 0 and bool(np.all(np.diff(times) > 0))
+    if either and given:
         try:  # A few paths are faster than any grid, if a few are enough.
-            found = sampled_moments(scene, times, tol, seed, threads, tuning.VARIANCE.few_steps)
-            return _dataset(times, *found, "monte_carlo")
+            return _dataset(times, *sample(most=tuning.VARIANCE.few_steps), "monte_carlo")
         except ToleranceError:
             pass
-    if method == "monte_carlo" or solve is None:
-        method, accuracy = "monte_carlo", MONTE_CARLO.tolerance if tol is None else tol
-        attempt = partial(sampled_moments, scene, times, accuracy, seed, threads, envelope=envelope)
-    else:
-        method = "deterministic"
-        accuracy = tuning.VARIANCE.tolerance[scene.dimension - 1] if tol is None else tol
-        attempt = partial(_solved, solve, scene, times, accuracy)
-    return answered(
-        attempt, lambda found: _dataset(times, *found, method), tol_given=tol is not None
-    )
+    try:
+        return answer("deterministic", partial(_solved, solve, scene, times, tol))
+    except ToleranceError as refused:
+        if refused.result is not None or not either:
+            raise
+    return answer("monte_carlo", sample)  # nothing is known from grids
 
 
 def _solved(solve, scene, times, tol):
     """Solve for w and v, and refuse what is too inaccurate."""
-    found, error = solve(scene, times, tol)
-    require_accuracy(times, found, error, error[1], tol)
+    accuracy = tuning.VARIANCE.tolerance[scene.dimension - 1] if tol is None else tol
+    found, error = solve(scene, times, accuracy)
+    if tol is None:
+        rate, rate_error = (
+            np.max(part[1] / np.where(times > 0, times, 1.0)) for part in (found, error)
+        )
+        accuracy *= min(1.0, max(rate, tuning.VARIANCE.least))
+        if rate_error > accuracy:
+            found, error = solve(scene, times, accuracy)
+    require_accuracy(times, found, error, error[1], accuracy)
     return found, error
 
 

@@ -172,7 +172,9 @@ def test_what_cannot_be_solved_is_refused(monkeypatch):
     always = replace(chosen, largest=500, growing=-np.inf)  # every mode counts as growing
     monkeypatch.setattr(tuning, "MOMENTS_ON_GRIDS", always)
     with pytest.raises(ToleranceError, match="no stable projection"):
-        ns.variance(SCENES["obstacle"], [3.0])
+        ns.variance(SCENES["obstacle"], [3.0], method="deterministic")
+    # nobody asked for grids, and paths know
+    assert ns.variance(SCENES["obstacle"], [3.0]).attrs["method"] == "monte_carlo"
 
 
 def test_errors_hold_where_they_oscillate():

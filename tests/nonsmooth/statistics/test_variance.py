@@ -93,3 +93,20 @@ def test_strong_noise_rounds_more(n, damping):
     found = ns.variance(scene, [time, 2 * time], tol=gamma2.value)
     slope = float(found["v"][1] - found["v"][0]) / time
     assert abs(slope - gamma2.value) <= float(found["v_error"].sum()) / time + gamma2.error
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        ns.Scene("friction", ns.White(0.3)),
+        ns.Scene("elasto_plastic", ns.White(0.2), potential="x**2/2"),
+        ns.Scene("friction", "hamiltonian", damping=3.0),
+    ],
+    ids=["one variable", "two variables", "Monte Carlo"],
+)
+def test_unless_a_tolerance_is_given_it_follows_the_size(scene):
+    """Weak noise has small variances, of which an absolute error would leave nothing."""
+    found = ns.variance(scene, [1.0, 10.0])
+    rate, error = (found[name] / found["time"] for name in ("v", "v_error"))
+    assert float(rate.max()) < 0.01
+    assert float(error.max()) <= 0.05 * float(rate.max())
