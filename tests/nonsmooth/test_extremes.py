@@ -66,6 +66,9 @@ REFUSED = {
     "oscillations of four variables": lambda: ns.asymptotic_variance(
         obstacle(noise="hamiltonian", observable="x + sin(1e9*eta)")
     ),
+    "weak noise from afar": lambda: ns.failure_time(
+        friction(noise=ns.White(1e-6), start={"y": 5}), 0.2
+    ),
     "short steps": lambda: ns.simulate(friction(), 10, step=1e-12),
     "short steps of one path": lambda: ns.simulate(
         friction(), 10, step=1e-12, paths=1, keep="paths"
@@ -100,6 +103,11 @@ def test_what_nobody_can_wait_for_is_refused(call):
 
 
 ANSWERED = {
+    "paths that hardly differ": lambda: (
+        ns.crossing_probability(friction(noise=ns.White(1e-6), start={"y": 5}), 0.2, [0.041])[
+            "probability"
+        ].values
+    ),
     "hardly any damping": lambda: ns.asymptotic_variance(friction(damping=1e-9)).value,
     "a late variance": lambda: ns.variance(friction(), [1e12])["v"].values,
     "a pole that can be integrated": lambda: (

@@ -15,7 +15,7 @@ from numpy.polynomial import legendre
 from scipy.linalg import solve_banded
 from scipy.linalg.lapack import zgbsv
 
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.grids.elements import Axis, continuous, lagrange
 from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.case_modes import Waves
@@ -45,6 +45,8 @@ class TailEquation:
     ------
     SceneError
         If the wall is infinitely far and no bound of the way is found.
+    ToleranceError
+        If noise is so weak that paths from the start are almost deterministic.
     """
 
     def __init__(self, tail: Tail, law: NormalLaw, lower: float, upper: float, degree: int):
@@ -184,7 +186,10 @@ class _Grid:
 
 
 def _axis(tail, top, degree, size=0.0):
-    """Elements from the level to beyond `top`, fine enough for exp(-z t) with |z| = `size`."""
+    """Elements from the level to beyond `top`, fine enough for exp(-z t) with |z| = `size`.
+
+    Weak noise needs many, because each has the width of what noise spreads.
+    """
     settings = tuning.TAIL_EQUATION
 
     def spread(v):
@@ -192,6 +197,11 @@ def _axis(tail, top, degree, size=0.0):
 
     edges, end = [tail.level], top + settings.beyond * spread(top)
     while edges[-1] < end:
+        if size == 0 and len(edges) > settings.most:
+            raise ToleranceError(
+                f"the start y = {tail.side * tail.start:g} is too far in the tails for a noise of "
+                f"sigma = {tail.sigma:g}; start nearer or use method='monte_carlo'"
+            )
         v = edges[-1]
         turned = settings.rotation * float(tail.drift(v)) / size if size > 0 else math.inf
         edges.append(v + min(v, settings.width * spread(v), turned))

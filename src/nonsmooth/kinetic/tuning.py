@@ -146,6 +146,7 @@ class TailEquation:
     rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
     width: float = 0.9  # chosen: width of elements over the spread of velocities on the way down
     beyond: float = 4.0  # chosen: spreads of y by which the grid reaches beyond the start
+    most: int = 400  # chosen: elements for the bound of the longest way; they take two seconds
     coarse: int = 7  # chosen: polynomial degree for the bound of the longest way
     exponents: int = 49  # chosen: exponents theta tried for that bound, over six decades
 
