@@ -106,9 +106,7 @@ def sampled_moments(
             f"v(tau)/tau = {size:.3g} at tau = {times[-1]:g} rests on the few of "
             f"{run.attrs['paths']} paths that have moved; choose a longer time"
         )
-    mean, uncertain = 0.0, 0.0
-    if envelope is None:
-        mean, uncertain = _stationary_mean(scene, labelled(seed, "stationary"), threads)
+    mean, uncertain = _stationary_mean(scene, labelled(seed, "stationary"), threads, envelope)
     w = run["mean"].values - mean * times
     w_error = np.abs(run["mean_bias"]) + np.hypot(run["mean_error"], run["mean_bias_error"])
     v, v_error = run["variance"].values, times * (bias + np.hypot(own, spread))
@@ -120,7 +118,10 @@ def sampled_moments(
     return found
 
 
-def _stationary_mean(scene, seed, threads):
+def _stationary_mean(scene, seed, threads, envelope):
+    """Return E g and its error; 0 under an envelope, where there is none."""
+    if envelope is not None:
+        return 0.0, 0.0
     if (exact := exact_mean(scene)) is not None:
         return exact.value, exact.error
     return sampled_mean(scene, seed=seed, threads=threads)
