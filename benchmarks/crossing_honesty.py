@@ -4,7 +4,7 @@
 random intervals, and compares three times of a curve with the Laplace transform summed by the
 trapezoidal rule on a vertical line, on a grid of higher degree. It prints one line per class of
 observables; arguments choose classes by their first words, `--first` the first seed and `--scenes`
-how many.
+how many. What it finds for each scene goes to the standard error.
 """
 
 import argparse
@@ -87,7 +87,7 @@ def compare(formulas, seed):
     seconds = time.process_time() - began
     levels = np.sqrt(p) * np.array(threshold)
     rows = []
-    for k in {int(np.argmin(np.abs(found.probability.values - W))) for W in PROBED}:
+    for k in sorted({int(np.argmin(np.abs(found.probability.values - W))) for W in PROBED}):
         exact = on_vertical_line(scene, levels, p * HORIZONS[k])
         true = abs(float(found.probability[k]) - exact)
         rows.append((true, float(found.probability_error[k])))
@@ -98,6 +98,8 @@ def compare(formulas, seed):
                 file=sys.stderr,
                 flush=True,
             )
+    ratios = ", ".join(f"{true / (stated + UNCERTAIN):.2g}" for true, stated in rows)
+    print(f"{seed}: {seconds:.1f} s, true over stated errors {ratios}", file=sys.stderr, flush=True)
     return seconds, rows
 
 
