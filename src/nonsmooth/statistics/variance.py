@@ -17,7 +17,7 @@ from nonsmooth.checks import (
 )
 from nonsmooth.errors import SceneError, ToleranceError, answered
 from nonsmooth.estimate import not_negative
-from nonsmooth.line import eigenfunctions
+from nonsmooth.line import eigenfunctions, quadrature
 from nonsmooth.refine import until_agreement
 from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_scene
@@ -71,8 +71,8 @@ def variance(
     Raises
     ------
     SceneError
-        If an argument is out of range, or a deterministic solver is asked for and the scene has
-        none.
+        If an argument is out of range, a deterministic solver is asked for and the scene has none,
+        or g is not square-integrable (which is seen for the state y with white noise).
     ToleranceError
         If `tol` cannot be met; the best values are its `result`.
     """
@@ -96,6 +96,8 @@ def variance(
             f"({', '.join(scene.state)}) with {scene.noise.title} at n = {scene.n:g}; use "
             "method='monte_carlo', which takes every scene"
         )
+    if scene.is_line and scene.grows_too_fast:
+        quadrature.solved(scene)  # refuses g whose variance is infinite
     given = tol is not None
     sample = partial(sampled_moments, scene, times, tol, seed, threads, envelope=envelope)
 

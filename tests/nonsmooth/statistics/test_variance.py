@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import ToleranceError
+from nonsmooth.errors import AssumptionWarning, SceneError, ToleranceError
 from nonsmooth.line import eigenfunctions
 from references import FRICTION
 
@@ -110,3 +110,22 @@ def test_unless_a_tolerance_is_given_it_follows_the_size(scene):
     rate, error = (found[name] / found["time"] for name in ("v", "v_error"))
     assert float(rate.max()) < 0.01
     assert float(error.max()) <= 0.05 * float(rate.max())
+
+
+@pytest.mark.parametrize("method", [None, "monte_carlo"])
+def test_an_infinite_variance_is_refused(method):
+    """E exp(2 a y^2) is infinite from a = 1/2 on, where m decays like exp(-y^2)."""
+    with (
+        pytest.raises(SceneError, match="not square-integrable"),
+        pytest.warns(AssumptionWarning),
+    ):
+        ns.variance(ns.Scene("friction", observable="exp(0.55*y**2)"), [1.0], method=method)
+
+
+def test_a_variance_is_answered_as_long_as_it_is_finite():
+    """For a < 1/4 there is an answer, though the paper's theorem does not cover the scene."""
+    with pytest.warns(AssumptionWarning):
+        scene = ns.Scene("friction", observable="exp(0.2*y**2)")
+    late = ns.variance(scene, [400.0])
+    gamma2 = ns.asymptotic_variance(scene).value
+    assert late["v"].item() / 400 == pytest.approx(gamma2, rel=0.01)  # the rest is O(1/tau)
