@@ -7,6 +7,7 @@ They are removed if no snakemake is alive in this folder, on this machine.
 import fcntl
 import os
 import platform
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -30,7 +31,7 @@ def unlock(folder: Path) -> list[Path]:
     """
     state = folder / STATE
     state.mkdir(exist_ok=True)
-    with open(state / "unlocking", "a+", encoding="utf-8") as guard:
+    with open(state / "unlocking", "a+", encoding="utf-8", errors="replace") as guard:
         # two programs like this one take turns
         fcntl.flock(guard, fcntl.LOCK_EX)
         # first the locks, then the processes: a run that starts meanwhile has other locks
@@ -70,7 +71,12 @@ def alive(folder: Path) -> Iterator[psutil.Process]:
 
 def main() -> None:
     """Unlock this folder."""
-    removed = unlock(Path())
+    try:
+        removed = unlock(Path())
+    except OSError as error:
+        sys.exit(
+            f"error: {error.filename or STATE}: {error.strerror}; delete it, or make it writable"
+        )
     if removed:
         print("the last run was killed: its locks are removed, its results are taken up")
 

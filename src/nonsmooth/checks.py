@@ -136,7 +136,7 @@ def require_numbers(
         _refuse(name, values, "fill in what is masked")
     try:
         found = np.asarray(values)
-    except ValueError:  # a ragged list
+    except (ValueError, TypeError):  # a ragged list, a dataset
         _refuse(name, values, "give numbers in a list or an array")
     if found.dtype.kind == "O":
         numbers = [as_number(value) for value in found.ravel()]

@@ -113,7 +113,7 @@ def of_another_quantity() -> Iterator[None]:
 def first_answer(
     attempts: Iterable[Callable[[], Found]],
     error: Callable[[Any], float],
-    good_enough: float = 0.0,
+    good_enough: Callable[[Any], bool] = lambda found: False,
 ) -> Found:
     """Try one way after another until one meets its tolerance.
 
@@ -123,8 +123,8 @@ def first_answer(
         As `solve` of `answered`.
     error : callable
         Takes what is found; returns the size of its error, by which results are compared.
-    good_enough : float
-        No other way is tried once one has reached this error.
+    good_enough : callable
+        Takes what is found, too; returns whether no other way is to be tried after this one.
 
     Returns
     -------
@@ -144,7 +144,7 @@ def first_answer(
             reached = float("inf") if refused.result is None else error(refused.result)
             if best is None or reached < least:
                 best, least = refused, reached
-            if least <= good_enough:
+            if refused.result is not None and good_enough(refused.result):
                 break
     assert best is not None  # there is at least one attempt
     raise best

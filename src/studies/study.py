@@ -101,6 +101,8 @@ class Study:
             raise ConfigError(
                 f"'scenes' = {shown(name)} cannot be read ({reason}); name a CSV file in UTF-8"
             ) from None
+        if "name" not in names:
+            raise ConfigError("has no column 'name'; add it, and separate cells by commas", path)
         if doubled := {name for name in names if names.count(name) > 1}:
             raise ConfigError(f"has the column {min(doubled)!r} twice; delete one of the two", path)
         found = {}

@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
+from tokenize import TokenError
 from typing import Any
 
 import pint
@@ -12,6 +13,7 @@ import sympy
 
 from nonsmooth.dimensions import Scales
 from nonsmooth.scenes.formulas import parse
+from reproduction.configuration.schema import shown
 from reproduction.errors import ConfigError
 
 # powers of the base quantities, as in {"length": 1, "time": -1} for a velocity
@@ -20,6 +22,9 @@ BASE = {"length": "m", "time": "s", "force": "N"}
 LONGEST_ERROR = 6  # decimals of an error that is not written with a power of ten
 # what a text may be: a number and a unit of letters, digits and signs
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([\w\s/*^().%µ·²³-]*)")
+
+# what is raised for units such as kg/0, kg) and kg*kg*kg*...
+_UNREADABLE = (pint.PintError, TokenError, ArithmeticError, AssertionError, RecursionError)
 
 
 @cache
@@ -55,19 +60,19 @@ def in_si(value: Any, unit: str) -> float:
     example = f"write such as '2 {unit}'" if unit != "1" else "write a number, or such as '5 %'"
     found = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
     if found is None:
-        raise ConfigError(f"{value!r} is no number with a unit; {example}")
+        raise ConfigError(f"{shown(value)} is no number with a unit; {example}")
     number, own = float(found[1]), found[2].strip().replace("²", "^2").replace("³", "^3")
     if not own and unit != "1":
-        raise ConfigError(f"{value!r} has no unit; {example}")
+        raise ConfigError(f"{shown(value)} has no unit; {example}")
     try:
         factor = _registry().parse_units(own.replace("%", "percent")) if own else 1.0
         return float(
             (number * factor * _registry().dimensionless).to("" if unit == "1" else unit).m
         )
     except pint.DimensionalityError:
-        raise ConfigError(f"{value!r} is no {_kind(unit)}; {example}") from None
-    except (pint.PintError, ValueError, AssertionError, TypeError):
-        raise ConfigError(f"{value!r} has a unit that is not known; {example}") from None
+        raise ConfigError(f"{shown(value)} is no {_kind(unit)}; {example}") from None
+    except (*_UNREADABLE, ValueError, TypeError):
+        raise ConfigError(f"{shown(value)} has a unit that is not known; {example}") from None
 
 
 def _kind(unit):

@@ -57,6 +57,7 @@ def test_lists(values):
         *([], [[1.0, 2.0]], [1.0, [2.0]], ["a"], [1.0, None], [1.0, np.nan], [1.0, np.inf], {1.0}),
         *({"y": 1.0}, "1", iter([1.0]), [2.0, 1.0], [1.0, 1.0], [0.0, 1.0], [True, 2.0, None]),
         *(np.ma.array([1.0, 2.0], mask=[True, False]), np.array(["2020"], dtype="M8[D]")),
+        xr.Dataset({"a": ("b", [1.0, 2.0])}),
     ],
 )
 def test_what_is_no_increasing_list(values):

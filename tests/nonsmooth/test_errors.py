@@ -74,7 +74,7 @@ def test_attempts_end_at_the_first_answer_or_one_that_is_good_enough():
     assert len(list(attempts)) == 1
     attempts = iter([refusal(3), refusal(2), refusal(1)])
     with pytest.raises(ToleranceError):
-        first_answer(attempts, error=float, good_enough=2)
+        first_answer(attempts, error=float, good_enough=lambda found: found <= 2)
     assert len(list(attempts)) == 1
 
 

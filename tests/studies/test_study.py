@@ -42,7 +42,9 @@ def test_a_file_of_scenes(tmp_path):
         ("name,n\na,1\na,2\n", "line 3: the name 'a' is taken"),
         ("name,n\nA b,1\n", "line 2: the name 'A b' must be lower-case"),
         ("name,n\na,1,2\n", "line 2 has not as many cells"),
-        ("n\n1\n", "line 2: the name ''"),
+        ("name,n\n,1\n", "line 2: the name ''"),
+        ("n\n1\n", "has no column 'name'"),
+        ("name;n\na;1\n", "separate cells by commas"),
     ],
 )
 def test_a_bad_file_of_scenes(tmp_path, rows, message):

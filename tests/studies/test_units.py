@@ -42,6 +42,9 @@ def test_is_read(text, unit, value):
         ("2 kg", "1", "is no plain number"),
         ("__import__('os')", "m", "is no number with a unit"),
         (True, "1", "is no number with a unit"),
+        ("5 kg/0", "kg", "a unit that is not known"),
+        ("5 kg)", "kg", "a unit that is not known"),
+        ("5 " + 3000 * "mm*" + "1", "m", r"^'5 mm[^\n]{60,80}\.\.\. has a unit that is not known"),
     ],
 )
 def test_is_refused(text, unit, message):

@@ -7,7 +7,7 @@ import time
 import psutil
 import pytest
 
-from workflow.unlock import alive, unlock
+from workflow.unlock import alive, main, unlock
 
 SNAKEMAKE = [sys.executable, "-m", "snakemake", "--cores", "1", "--", "figure_1"]
 
@@ -62,6 +62,25 @@ def test_a_run_that_is_alive_keeps_its_locks(locked):
     assert again(repository).returncode != 0
     psutil.Process(run.pid).resume()
     assert run.wait(timeout=100) == 0
+
+
+@pytest.mark.parametrize("damage", ["a file", "a folder", "bytes"])
+def test_damaged_records_cost_a_line(tmp_path, monkeypatch, damage):
+    """No traceback, and nothing is unlocked that may be in use."""
+    state = tmp_path / ".snakemake"
+    if damage == "a file":
+        state.write_text("")
+    elif damage == "a folder":
+        (state / "unlocking").mkdir(parents=True)
+    else:
+        (state / "locks").mkdir(parents=True)
+        (state / "locks/0.output.lock").write_text("results/a\n")
+        (state / "unlocking").write_bytes(b"\xff\xfe")
+        assert unlock(tmp_path) == []
+        return
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit, match=r"^error: .snakemake[^\n]*; delete it"):
+        main()
 
 
 def test_a_run_on_another_machine_keeps_its_locks(tmp_path):

@@ -30,6 +30,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from nonsmooth.boundary_layer import two_variables
 from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.boundary_layer.milne import highest_order, layer_constants
 from nonsmooth.crossing import tuning
@@ -83,6 +84,8 @@ def corrected_crossing(
         If an error is above `tol`; with the values and errors as its `result`.
     """
     _require_order(scene, order)
+    if accuracy is None and order == 1 and tol is not None and two_variables.applies(scene):
+        accuracy = _accuracy_of_kappa(tol, threshold, p)
     with of_another_quantity():
         constants, errors = layer_constants(scene, seed, threads, accuracy, order > 1)
     if order > 1 and constants.mean != 0:
@@ -119,6 +122,17 @@ def _require_order(scene, order):
             f"with {scene.noise.title} and g = {quoted(scene.observable)}; use order={known} or "
             "method='monte_carlo'"
         )
+
+
+def _accuracy_of_kappa(tol, threshold, p):
+    """Return a loose error of kappa if a tolerance allows for it, else None, for the usual one.
+
+    An error d of kappa moves a threshold from b to b + d / sqrt(p), which changes W by at most
+    d / (b sqrt(p)).
+    """
+    settings = tuning.CORRECTED_ERROR
+    allowed = settings.share_of_kappa * tol * np.sqrt(p) * np.min(np.abs(threshold))
+    return settings.loose_kappa if allowed >= settings.loose_kappa else None
 
 
 def _error_of_last(

@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from nonsmooth.boundary_layer import two_variables
 from nonsmooth.boundary_layer.milne import highest_order
 from nonsmooth.checks import (
     require_choice,
@@ -85,10 +86,11 @@ def crossing_probability(
 
         - ``"deterministic"`` solves an equation for the first passage. It is for the state y with
           white noise and, in up to a minute or two, for two state variables with finite n, odd g
-          and drift, and white or Langevin noise. For these scenes it is chosen, with two
+          and drift, and white or Langevin noise. For these scenes it is chosen, with three
           exceptions: a parameter of another method is given; or `tol` is so loose that
           ``"monte_carlo"`` should be faster or, for one variable and odd g, that ``"corrected"``
-          meets it.
+          meets it; or p is so large that ``"corrected"`` should meet `tol` (above 1e7 for one
+          variable, where the solver rounds, and above 10 / `tol` for two).
         - ``"monte_carlo"`` counts paths. It is chosen for all other scenes, and where the
           deterministic method misses a tolerance that is loose enough for counting.
         - ``"importance_sampling"`` leads paths to the threshold and weights them, for rare
@@ -172,14 +174,19 @@ def crossing_probability(
     def attempt(name, limits):
         method = _by(name, given)
         solve = partial(method, scene, thresholds, horizons, p, seed=seed, threads=threads)
-        return answered(lambda: solve(**given, **limits), lambda found: (name, *found))
+        return answered(lambda: solve(**(given | limits)), lambda found: (name, *found))
+
+    def error(found):
+        return np.max(found[1]["probability_error"])
+
+    def good_enough(found):
+        """Whether Monte Carlo, which follows the solver, would not be better."""
+        solved = tol is None and found[0] == "deterministic"
+        return solved and error(found) <= MONTE_CARLO.tolerance
 
     def solve():
-        return first_answer(
-            (partial(attempt, *one) for one in attempts),
-            error=lambda found: np.max(found[1]["probability_error"]),
-            good_enough=MONTE_CARLO.tolerance if tol is None else 0.0,
-        )
+        ways = (partial(attempt, *one) for one in attempts)
+        return first_answer(ways, error=error, good_enough=good_enough)
 
     def present(found):
         name, values, attributes = found
@@ -241,8 +248,10 @@ def _attempts(scene, thresholds, horizons, p, given):
     attempts = [("deterministic", {})]
     if tol >= choice.sampled_tolerance or "tol" not in given:
         attempts.append(("monte_carlo", {"most": choice.sampled_steps}))
+    order = _order_that_suffices(scene, p, tol, "tol" in given)
+    formula = [] if order is None else [("corrected", {"order": order, "tol": tol})]
     if "tol" not in given:
-        return attempts
+        return formula + attempts
     windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(choice.window)
     pilot, least = least_steps(scene, p * horizons[-1], tol)
 
@@ -254,11 +263,27 @@ def _attempts(scene, thresholds, horizons, p, given):
     kind = scene.dimension - 1
     solves = windows * (1 + choice.one_more[kind] * (len(thresholds) - 1))
     attempts = sampled(solves * choice.seconds_solved[kind]) + attempts
-    covered = scene.is_line and scene.is_odd() and not scene.grows_too_fast
-    if covered and tol * p**2 >= choice.least_corrected:
-        seconds = choice.seconds_corrected * len(thresholds)
-        attempts = [*sampled(seconds), ("corrected", {"order": 3}), *attempts]
+    if formula:
+        seconds = choice.seconds_corrected[kind] * len(thresholds)
+        attempts = sampled(seconds) + formula + attempts
     return attempts
+
+
+def _order_that_suffices(scene, p, tol, given):
+    """Return the order of the corrected formula that meets a tolerance at so large a p, or None.
+
+    In one variable, a solver is as fast up to where its rounding shows; a given tolerance, which
+    may be a loose one, is left to the formula before.
+    """
+    choice = tuning.METHOD_CHOICE
+    if scene.grows_too_fast:
+        return None
+    if two_variables.applies(scene):
+        return 1 if tol * p >= choice.first_order else None
+    if not scene.is_line:
+        return None
+    early = given and scene.is_odd() and tol * p**2 >= choice.least_corrected
+    return highest_order(scene) if early or p >= choice.rounded else None
 
 
 def _asymptotic(scene, thresholds, horizons, p, seed, threads):

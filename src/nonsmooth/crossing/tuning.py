@@ -16,9 +16,15 @@ class MethodChoice:
     # the same for one more threshold, over that of the first; fitted: one variable shares modes
     one_more: tuple[float, float] = (0.2, 1.0)
     window: float = 20.0
-    seconds_corrected: float = 0.05  # of the corrected formula; fitted: as above
+    # of the corrected formula, for one and two variables; fitted: as above
+    seconds_corrected: tuple[float, float] = (0.05, 5.0)
     # least error of the corrected formula of the order 3, times p^2; fitted: as above
     least_corrected: float = 0.03
+    # p from which on rounding, some 5e-15 p, keeps the solver from 1e-7; fitted: friction, n = 100
+    rounded: float = 1e7
+    # error of the order 1 for two variables, times p, above which it is tried; fitted: below 2 for
+    # the models at unit damping, b = 0.5 or 1
+    first_order: float = 10.0
     # part of the solver's time that a pilot may cost; chosen: small, as it may be in vain
     pilot_share: float = 0.1
     # tolerance and steps up to which Monte Carlo replaces a solver that fails; chosen: minutes
@@ -115,6 +121,10 @@ class CorrectedError:
     # R is at most the first number plus the second times log(1 + 2 m / b); fitted: as above
     longest: tuple[float, float] = (1.5, 2.0)
     drift: float = 2.0  # factor of X; fitted: errors of forty random scenes of one variable
+    # part of a tolerance that the error of kappa may take; and an error of kappa of two variables
+    # that costs much less than the usual one; chosen
+    share_of_kappa: float = 0.2
+    loose_kappa: float = 1e-2
     rounding: float = 1e-15  # of every value; derived: some units in the last place of 1
 
 

@@ -111,7 +111,7 @@ def _modes(even, odd):
         agree = np.abs(slow / fast - 1) < tuning.REDUCED_ORDINATES.agree
         ratios = np.abs(fast[1:] / fast[:-1])
     gaps = np.where(agree[1:] & agree[:-1], ratios, 0.0)
-    cut = 1 + int(np.argmax(gaps))
+    cut = 1 + int(np.argmax(gaps)) if len(gaps) else 1  # constants alone have one mode
     squares = np.append(slow[:cut], fast[cut:])
     return np.sqrt(squares), np.hstack([slow_modes[:, :cut], fast_modes[:, cut:]])
 

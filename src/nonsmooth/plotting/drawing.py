@@ -85,6 +85,13 @@ def _dataset(result):
         raise _no_result(result)
     if not all(variable.dtype.kind in "iuf" for variable in result.data_vars.values()):
         raise _no_result(result)
+    for name in main_variables(result):
+        for about in described_by(result, name):
+            if not set(result[about].dims) <= set(result[name].dims):
+                raise SceneError(
+                    f"{about} has other dimensions than {name}, which it is about; give what a "
+                    "function of nonsmooth returns, unchanged"
+                )
     return result
 
 

@@ -29,7 +29,8 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     SceneError
-        If it is no such dataset, an empty one, or one with numbers outside of [0, 1].
+        If it is no such dataset, an empty one, or one that has been changed: numbers outside of
+        [0, 1], negative errors, lower limits above the upper ones, other dimensions.
     """
     if not isinstance(crossing, xr.Dataset) or not set(_NEEDED) <= set(crossing.data_vars):
         raise SceneError(
@@ -40,8 +41,10 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
         raise SceneError("crossing has no probabilities; give what crossing_probability returned")
     probabilities = W, lower, upper
     numbers = all(part.dtype.kind in "iuf" for part in (*probabilities, error))
-    if not numbers or not all(
-        (part.values >= 0).all() and (part.values <= 1).all() for part in probabilities
+    alike = all(part.dims == W.dims for part in (lower, upper, error))
+    inside = (part.clip(0, 1) == part for part in probabilities)
+    if not (numbers and alike) or not all(
+        condition.all() for condition in (*inside, error >= 0, lower <= upper)
     ):
         raise SceneError(
             "crossing has numbers that are no probabilities; give what crossing_probability "

@@ -73,11 +73,14 @@ def asymptotic_variance(
         return Estimate(0.0, 0.0, way, time.perf_counter() - began)
     ways = _fastest_first(scene, tol) if method is None else [method]
 
+    def error(found):
+        return found[1] / found[0] if found[0] > 0 else math.inf
+
     def solve():
         return first_answer(
             (partial(METHODS[name], scene, tol, seed, threads) for name in ways),
-            error=lambda found: found[1] / found[0] if found[0] > 0 else math.inf,
-            good_enough=MONTE_CARLO.tolerance if tol is None else 0.0,
+            error=error,
+            good_enough=lambda found: tol is None and error(found) <= MONTE_CARLO.tolerance,
         )
 
     def present(found):

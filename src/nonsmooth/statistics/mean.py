@@ -85,7 +85,7 @@ def mean(
             (partial(METHODS[way], scene, tol, seed, threads) for way in ways),
             error=lambda found: found[1],
             # what solvers have reached by default is not worse than a sample
-            good_enough=math.inf if tol is None else 0.0,
+            good_enough=lambda found: tol is None,
         ),
         present,
         tol_given=tol is not None,

@@ -66,7 +66,10 @@ def read(path: str | Path) -> dict[str, Any]:
 def _text(path):
     try:
         if not path.is_file():
-            raise ConfigError("is not a file that exists; name a configuration file", path)
+            raise ConfigError(
+                "is not a file that exists; name a configuration file, and write -- before targets",
+                path,
+            )
         if path.stat().st_size > LARGEST_FILE:
             raise ConfigError(
                 f"has more than {LARGEST_FILE:_} bytes; a configuration has some thousands", path

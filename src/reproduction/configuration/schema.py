@@ -155,5 +155,7 @@ def _hint(error):
         if found := re.fullmatch(r"([-+]?\d+)(\.?)(\d*)[eE]([-+]?)(\d+)", text):
             whole, _, fraction, sign, exponent = found.groups()
             return f"; write {whole}.{fraction or 0}e{sign or '+'}{exponent}"
+        if found := re.fullmatch(r"([-+]?)inf(inity)?", text.strip(), re.IGNORECASE):
+            return f"; write {found[1]}.inf"
         return "; write a number without quotes"
     return ""

@@ -90,6 +90,43 @@ def test_corrected_formula_is_taken_where_its_error_is_small():
     assert run.attrs["method"] != "corrected"
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "scene",
+    [
+        ns.Scene("friction", "langevin"),
+        ns.Scene("obstacle", potential="x**2/2", observable="x"),
+        ns.Scene("elasto_plastic", potential="x**2/2", damping=0.3, n=10, start={"y": 1.0}),
+    ],
+    ids=lambda scene: scene.model,
+)
+def test_two_variables_at_large_p_have_the_formula(scene):
+    """Order 1 is taken where p is far above 1 / tol, and is as close to the solver as it states."""
+    gamma = np.sqrt(ns.asymptotic_variance(scene, tol=1e-3).value)
+    asked = {"threshold": (-np.inf, 0.7 * gamma), "horizons": [0.3, 1.0, 3.0]}
+    run = ns.crossing_probability(scene, **asked, p=1e5, tol=1e-3)
+    solved = ns.crossing_probability(scene, **asked, p=1e5, method="deterministic", tol=1e-4)
+    assert run.attrs["method"] == "corrected"
+    distance = np.abs(run["probability"] - solved["probability"])
+    assert np.all(distance <= run["probability_error"] + solved["probability_error"])
+    default = ns.crossing_probability(scene, **asked, p=1e6)
+    assert default.attrs["method"] == "corrected"
+    assert np.all(default["probability_error"] <= 1e-4)
+    few = ns.crossing_probability(scene, **asked, p=10.0, tol=1e-2)
+    assert few.attrs["method"] != "corrected"
+
+
+@pytest.mark.filterwarnings("ignore::nonsmooth.errors.AccuracyWarning")
+@pytest.mark.parametrize("p", [1e8, 1e14, 1e20])
+def test_at_huge_p_nothing_rounds(p):
+    """W at p is within a layer of its limit, though E exp(-z tau) is 1 to all digits."""
+    run = ns.crossing_probability(FRICTION, 1.0, HORIZONS, p=p)
+    limit = ns.crossing_probability(FRICTION, 1.0, HORIZONS, method="asymptotic")
+    assert np.all(run["probability_error"] < 1e-7)
+    assert np.all(np.diff(run["probability"]) > 0)
+    np.testing.assert_allclose(run["probability"], limit["probability"], atol=3 / np.sqrt(p) + 1e-8)
+
+
 @pytest.mark.parametrize(
     ("arguments", "cure"),
     [
@@ -129,6 +166,7 @@ def test_formula_refuses_an_observable_that_is_not_centred():
         (FRICTION, {"tol": 1e-2}, "monte_carlo"),  # 1 ms against a second
         (FRICTION, {"paths": 10}, "monte_carlo"),
         (FRICTION, {"order": 1}, "corrected"),
+        (FRICTION, {"p": 1e20}, "corrected"),  # rounding leaves the solver nothing
         (ns.Scene("friction", "hamiltonian"), {"tol": 0.1}, "monte_carlo"),
     ],
 )

@@ -88,6 +88,8 @@ def test_what_is_no_result_is_refused():
     found = ns.crossing_probability(FRICTION, 0.5, [1.0, 2.0], method="asymptotic")
     with pytest.raises(SceneError, match="give what a function of nonsmooth returns"):
         ns.plot(found.astype(object))
+    with pytest.raises(SceneError, match="lower has other dimensions"):
+        ns.plot(found.assign(lower=found.lower.expand_dims(more=2)))
     with pytest.raises(SceneError, match="isel"):
         ns.plot(xr.DataArray(np.zeros((2, 3, 4)), dims=("x", "y", "z")))
 

@@ -58,6 +58,26 @@ def test_numbers_that_are_no_probabilities_are_refused(factor):
         ns.reliability_index(crossing * factor)
 
 
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"probability_error": -0.1},
+        {"probability_error": np.nan},
+        {"lower": 0.9, "upper": 0.1},
+        {"upper": [0.5, 0.6]},
+    ],
+    ids=str,
+)
+def test_a_result_that_was_changed_is_refused(changed):
+    """Errors are not negative, limits are in order, and all have the same dimensions."""
+    crossing = ns.crossing_probability(ns.Scene("friction"), 0.5, [1.0], method="asymptotic")
+    for name, value in changed.items():
+        dims = ("more", "horizon") if isinstance(value, list) else ("horizon",)
+        crossing[name] = (dims, np.reshape(value, (-1, 1)[-len(dims) :]))
+    with pytest.raises(SceneError, match="returned, unchanged"):
+        ns.reliability_index(crossing)
+
+
 @pytest.mark.parametrize("kind", [str, complex, object])
 def test_what_is_no_number_is_refused(kind):
     """Texts, complex numbers, objects."""

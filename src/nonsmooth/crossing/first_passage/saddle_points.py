@@ -127,8 +127,8 @@ def _samples(problem, times):
         if not -settings.inexact <= value <= 1 + settings.inexact:
             raise ToleranceError(
                 f"the Laplace transform of the time of passage is {value:.2g} on a coarse grid and "
-                "not between 0 and 1, as where a path starts far in the tails; start nearer or use "
-                "method='monte_carlo'"
+                "not between 0 and 1, as where a path starts far in the tails, or p is huge; start "
+                "nearer, or use method='corrected' or 'monte_carlo'"
             )
         if value < problem.settings.least_transform:
             break

@@ -127,11 +127,14 @@ def state_crossing_probability(
             lambda found: (name, *found),
         )
 
+    def error(found):
+        return np.max(found[1]["probability_error"])
+
     def solve():
         return first_answer(
             (partial(attempt, name) for name in names),
-            error=lambda found: np.max(found[1]["probability_error"]),
-            good_enough=MONTE_CARLO.tolerance if tol is None else 0.0,
+            error=error,
+            good_enough=lambda found: tol is None and error(found) <= MONTE_CARLO.tolerance,
         )
 
     def present(found):
