@@ -9,6 +9,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from nonsmooth.checks import (
+    LARGEST,
+    SMALLEST,
     require_choice,
     require_increasing,
     require_list,
@@ -21,7 +23,7 @@ from nonsmooth.crossing.probability import crossing_probability, require_options
 from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.reliability import tuning
-from nonsmooth.reliability.reach import typical_reach
+from nonsmooth.reliability.reach import typical_reach, typical_time
 from nonsmooth.reliability.roots import FALLING, RISING, Root, Values, root_on_grid, solved_root
 from nonsmooth.results import between_limits
 from nonsmooth.scenes.scene import Scene, require_random
@@ -169,9 +171,17 @@ def failure_time(
     ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
 
     def guess(P):
-        start = tuning.SCALE.longest / scene.damping
-        far = np.sqrt(p) * np.min(np.abs(pair)) / typical_reach(scene, start, P, seed, threads)
-        return start * min(far, far**2) / p  # int g spreads like the root of the time, later on
+        def reach(time):
+            return typical_reach(scene, time, P, seed, threads)
+
+        level = np.sqrt(p) * np.min(np.abs(pair))
+        guessed = typical_time(reach, level, tuning.SCALE.longest / scene.damping) / p
+        if not SMALLEST < guessed < LARGEST:
+            raise SceneError(
+                f"threshold is {quoted(threshold)}, which is crossed at about T = {guessed:.0e}; "
+                f"choose one that is crossed between {SMALLEST:g} and {LARGEST:g}"
+            )
+        return guessed
 
     def curves(x, tol):
         return [ask(pair, x, tol).isel(threshold=0)] * len(targets)

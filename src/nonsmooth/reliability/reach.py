@@ -1,5 +1,7 @@
 """How far int g typically gets: a guess from few paths, with which searches begin."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from nonsmooth.paths.ensembles import over_blocks
@@ -21,7 +23,8 @@ def typical_reach(
     ----------
     scene : Scene
     time : float
-        "1"; beyond some relaxation times, the level is taken to grow like its square root.
+        "1"; beyond some relaxation times, or many steps, the level is taken to grow like its square
+        root.
     probability : float
         What is rarer than the paths can tell is taken from a normal tail.
     seed, threads
@@ -32,9 +35,8 @@ def typical_reach(
     float
         Positive.
     """
-    scale = tuning.SCALE
-    simulated = min(time, scale.longest / scene.damping)
-    step = coarse_step(scene)
+    scale, step = tuning.SCALE, coarse_step(scene)
+    simulated = min(time, scale.longest / scene.damping, scale.steps * step)
     sampling = Sampling(step, scale.paths, labelled(seed, "reach"), threads=threads)
 
     def peaks(panel, lanes):
@@ -49,3 +51,34 @@ def typical_reach(
         slope = (far**2 - near**2) / (np.log(np.sqrt(known)) - np.log(known))
         far = np.sqrt(far**2 + slope * np.log(known / probability))
     return float(max(far, np.finfo(float).tiny) * np.sqrt(time / simulated))
+
+
+def typical_time(reach: Callable[[float], float], level: float, start: float) -> float:
+    """Guess when a level is reached, by the secant method in logarithms.
+
+    Parameters
+    ----------
+    reach : callable
+        Takes a time > 0 and returns the typical reach by then.
+    level : float
+        "1".
+    start : float
+        Time to begin with, "1".
+
+    Returns
+    -------
+    float
+    """
+    scale, time, before = tuning.SCALE, np.log(start), None
+    for _ in range(scale.attempts):
+        gap = np.log(level / reach(np.exp(time)))
+        if abs(gap) < np.log(scale.near):
+            break
+        # late, int g spreads like the root of the time; early, like a power up to 3/2
+        power = scale.powers[int(gap < 0)]
+        if before is not None:
+            found = (before[1] - gap) / (time - before[0])
+            power = np.clip(found, *scale.powers)
+        before = time, gap
+        time += gap / power
+    return float(np.exp(time))

@@ -9,6 +9,12 @@ class Scale:
 
     paths: int = 1024  # chosen: a quantile to some per cent
     longest: float = 100.0  # chosen: relaxation times that are simulated; later reach ~ sqrt(T)
+    steps: float = 1e5  # chosen: of each path, at most; part of a second
+    # chosen: of the guess of a time: how often the reach is sampled, the factor within which it
+    # is near enough, and the powers of the time with which int g spreads late and early
+    attempts: int = 8
+    near: float = 2.0
+    powers: tuple[float, float] = (0.5, 1.5)
     counted: float = 20.0  # chosen: paths beyond the outermost quantile that is read off
 
 

@@ -6,6 +6,7 @@ from scipy import optimize
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.reliability.reach import typical_time
 from references import FRICTION, GAMMA2
 
 
@@ -72,6 +73,7 @@ def test_scenes_without_solver_are_sampled():
         (lambda: ns.crossing_threshold(FRICTION, [0.1, 1.0], 2.0), "between 0 and 1"),
         (lambda: ns.crossing_threshold(FRICTION, 0.1, 2.0, sides="left"), "choose from both"),
         (lambda: ns.failure_time(FRICTION, -0.6), "threshold > 0"),
+        (lambda: ns.failure_time(FRICTION, 1e30), "threshold is 1e.30, which is crossed at"),
         (lambda: ns.failure_time(FRICTION, 0.6, "half"), "give numbers"),
         (lambda: ns.failure_time(FRICTION, 0.6, method="counting", paths=100), "choose from"),
         (lambda: ns.failure_time(FRICTION, 0.6, method="monte_carlo", order=2), "no parameter"),
@@ -91,3 +93,22 @@ def test_a_tolerance_out_of_reach_is_refused_with_the_best_root():
         ns.crossing_threshold(FRICTION, 0.2, 2.0, **asked)
     found = refused.value.result.squeeze()
     assert found["lower"] < found["threshold"] < found["upper"]
+
+
+@pytest.mark.slow
+def test_times_of_near_thresholds():
+    """Before damping matters int g scales like t^(3/2), and times like b^(2/3)."""
+    near, nearer = (ns.failure_time(FRICTION, b).squeeze() for b in (1e-9, 1e-12))
+    # friction is linear, with the rate n, while y is below 1/n; it changes times by n T = 2e-4
+    rates = FRICTION.damping + FRICTION.n
+    ratio = float(near["time"] / nearer["time"])
+    assert ratio == pytest.approx(100.0, rel=10 * rates * float(near["time"]))
+    assert near["time_error"] < 1e-6 * near["time"]
+
+
+@pytest.mark.parametrize("power", [0.5, 1.5])
+@pytest.mark.parametrize("level", [1e-12, 1.0, 1e12])
+def test_guesses_of_times(power, level):
+    """Reaches that are powers of the time are inverted to within the factor asked for."""
+    guess = typical_time(lambda time: 3 * time**power, level, 100.0)
+    assert 0.5 < (guess / (level / 3) ** (1 / power)) ** power < 2

@@ -11,12 +11,14 @@ from nonsmooth.crossing.first_passage.problem import (
     ContourSettings,
     LaplaceProblem,
 )
+from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.adding_doubling import fields
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
 from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates, reduced
+from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 
 
@@ -48,6 +50,7 @@ class PlaneProblem(LaplaceProblem):
     def __init__(self, scene: Scene, lower: float, upper: float, times: np.ndarray):
         self.scene, self.lower, self.upper = scene, lower, upper
         self._times, self._ends = times, boxed(scene)
+        _require_resolved(scene, self._ends, min(-lower, upper))
         self._grids: dict[tuple, PlaneOrdinates] = {}
         self._known: dict[tuple, np.ndarray] = {}
         self._reduced: dict[tuple, ReducedOrdinates] = {}
@@ -168,6 +171,43 @@ class PlaneProblem(LaplaceProblem):
         while math.log10(ends[1] / ends[0]) > settings.widest * parts:
             parts *= 2
         return np.geomspace(*ends, parts * 2**refined + 1)
+
+
+def _require_resolved(scene, ends, distance):
+    """Refuse thresholds that paths cross before they leave the elements around the start.
+
+    On the nodes of these elements g is not 0 from the beginning: all levels may then agree on
+    paths that cross too early.
+    """
+    settings, driven = tuning.NEAR_WALL, scene.noise.driven
+    (slow,) = set(ends) - {driven}
+    start = {symbol: scene.start.get(symbol.name, 0.0) for symbol in ends}
+    times = np.geomspace(settings.first, 1.0, settings.times) / scene.damping
+    # noise moves the driven variable like t^(1/2), whose integral moves the other one
+    noisy = scene.noise.sigma * np.sqrt(times)
+    reach = {driven: noisy, slow: (noisy + abs(start[driven])) * times}
+    g = vectorised(scene.numerical_observable(), tuple(start))
+
+    def ways(symbol):
+        """How far int g gets, if one variable moves."""
+        places = ({**start, symbol: start[symbol] + side * reach[symbol]} for side in (-1, 1))
+        return times * np.max([np.abs(g(*place.values())) for place in places], axis=0)
+
+    def crosses(symbol):
+        """First time at which int g gets there, if it does."""
+        there = ways(symbol) >= distance
+        return int(np.argmax(there)) if there.any() else len(times)
+
+    first = min(crosses(driven), crosses(slow))
+    if first == 0 or (
+        first == crosses(slow) < len(times)
+        and abs(g(*start.values())) * times[first] < distance / settings.straight
+        and reach[slow][first] < settings.share * ends[slow]
+    ):
+        raise ToleranceError(
+            f"a threshold at {distance:.3g} from the start is crossed before grids of two "
+            "variables resolve the state; use method='monte_carlo'"
+        )
 
 
 def inverted(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.ndarray]:

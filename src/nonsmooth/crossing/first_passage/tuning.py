@@ -96,6 +96,9 @@ class VerticalLines:
     first: float = 0.1  # chosen: least height, times the mean duration
     least: float = 1e-12  # derived: rounding of 1 - F
     beyond: int = 2  # chosen: so many samples in a row must be negligible
+    # chosen: unit of places, over the abscissa; poles come out wrong where most places are far from
+    # 1, above it most of all. From 10 to 10^4 it makes no difference
+    unit: float = 100.0
     far: tuple[float, ...] = (2.0, 4.0, 8.0, 30.0, 100.0)  # chosen: heights at which F is 0
     falls: float = 0.5  # chosen: more samples must make the error at least so much smaller
     most: int = 250  # chosen: number of samples from which no more are added
@@ -197,6 +200,18 @@ class Basis(NamedTuple):
 
 
 @dataclass(frozen=True)
+class NearWall:
+    """Thresholds that are too near for grids of two variables."""
+
+    first: float = 1e-8  # chosen: relaxation times after which a threshold may be crossed
+    times: int = 200  # chosen: times at which paths are followed, up to one relaxation time
+    straight: float = 2.0  # chosen: a path that starts at half of the speed needs no resolution
+    # chosen: least reach of the state, over the half width of the grid; at a quarter of it errors
+    # were wrong, at half of it no tolerance was met
+    share: float = 0.05
+
+
+@dataclass(frozen=True)
 class PlaneGrids:
     """Grids of two state variables by their resolution."""
 
@@ -271,6 +286,7 @@ LINE_GRIDS = LineGrids()
 FAR_START = FarStart()
 SLABS = Slabs()
 EACH_PART = EachPart()
+NEAR_WALL = NearWall()
 PLANE_GRIDS = PlaneGrids()
 BASES = (
     Basis(3e-7, 0.04),

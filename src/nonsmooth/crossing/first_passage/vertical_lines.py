@@ -87,9 +87,9 @@ def inverted(
         # above, the phase of exp(-z t_0) is rounded by more than the accuracy
         highest = accuracy / (tuning.VERTICAL_LINES.phase * np.max(delays))
     sampled = _sampled(scaled, abscissa, size, accuracy, offset, highest)
-    terms = []
+    terms, unit = [], tuning.VERTICAL_LINES.unit * abscissa
     for (z, values), delay in zip(sampled, delays, strict=True):
-        poles, residues = _residues(z, values, accuracy)
+        poles, residues = (unit * part for part in _residues(z, values, accuracy))
         if rising:
             exponents, coefficients = poles, residues / abscissa
         else:  # the pole of 1 / z, at which F is minus the sum of the others
@@ -114,6 +114,7 @@ def _sampled(scaled, abscissa, size, accuracy, offset, highest):
         rest = rest - 1 if np.all(np.abs(samples[height]) < accuracy) else settings.beyond
         place += 1
     unsure, worst = list(pairwise(list(samples)[1:])), np.inf
+    unit = settings.unit * abscissa
     while unsure and len(samples) < settings.most:
         columns = _columns(samples, abscissa)
         fits = [_fit(*part, accuracy, settings.shares[0]) for part in columns]
@@ -121,7 +122,7 @@ def _sampled(scaled, abscissa, size, accuracy, offset, highest):
         for low, high in unsure:
             middle = np.sqrt(low * high)
             samples[middle] = scaled(middle)
-            found = [fit(complex(abscissa, middle)) if fit else 0.0 for fit in fits]
+            found = [fit(complex(abscissa, middle) / unit) if fit else 0.0 for fit in fits]
             errors.append(np.max(np.abs(found - samples[middle])))
             if errors[-1] > accuracy:
                 wrong += [(low, middle), (middle, high)]
@@ -132,8 +133,8 @@ def _sampled(scaled, abscissa, size, accuracy, offset, highest):
 
 
 def _columns(samples, abscissa):
-    """Places on the line and values, for each part."""
-    z = abscissa + 1j * np.array(list(samples))
+    """Places on the line, in units that suit the fits, and values, for each part."""
+    z = (abscissa + 1j * np.array(list(samples))) / (tuning.VERTICAL_LINES.unit * abscissa)
     return [(z, part) for part in np.array(list(samples.values())).T]
 
 

@@ -58,6 +58,11 @@ def solved(asked: StateCrossing, times: np.ndarray, tol: float) -> tuple[np.ndar
     """
     settings = tuning.LINE
     phi, knot = _potential(asked)
+    if not phi(np.array(asked.start)) < settings.deepest:
+        raise ToleranceError(
+            f"the start of {asked.variable} is too far in the tails, where its potential rounds; "
+            "start nearer or use method='monte_carlo'"
+        )
     edges = _edges(asked, phi, knot, times[0])
     depth = float(phi(np.array(asked.start)) - phi(edges).min())
 

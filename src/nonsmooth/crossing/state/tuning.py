@@ -11,6 +11,7 @@ class Line:
     degrees: tuple[int, ...] = (6, 9, 12, 16, 20, 26)  # chosen: of the elements, coarse to fine
     safety: float = 3.0  # chosen: the error is so many times the change of the last two degrees
     depth: float = 60.0  # chosen: an infinite level is replaced where m has fallen by exp(-60)
+    deepest: float = 1e10  # derived: Phi at the start, whose rounding is far below that depth
     first_reach: float = 1.0  # chosen: sigmas from the start at which that search begins
     reach_step: float = 1.25  # chosen: factor of that search
     fewest: float = 8.0  # chosen: elements of the interval, at least

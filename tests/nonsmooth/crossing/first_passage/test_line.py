@@ -194,3 +194,13 @@ class TestDeterministic:
         bias = np.abs(sample.step_bias) + 3 * sample.step_bias_error
         gap = np.abs(sample.probability - found.probability)
         assert np.all(gap < 4.5 * sample.standard_error + bias)
+
+
+def test_early_crossings_are_those_of_integrated_brownian_motion():
+    """Int g scales like t^(3/2) while damping is negligible, here at 1e-8 and at 1e-14."""
+    early, earlier = (
+        exact(b, [b ** (2 / 3), 3 * b ** (2 / 3)], 1.0, tol=1e-5) for b in (1e-12, 1e-20)
+    )
+    allowed = early.probability_error + earlier.probability_error + 1e-7  # damping: of order T
+    assert np.all(np.abs(early.probability - earlier.probability).values < allowed.values)
+    assert 0.05 < early.probability[0] < 0.1 < 0.7 < early.probability[1]

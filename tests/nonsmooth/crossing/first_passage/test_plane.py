@@ -6,9 +6,10 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
+from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.adding_doubling import fields
-from references import COLORED_FRICTION, OBSTACLE
+from references import COLORED_FRICTION, OBSTACLE, PLASTIC
 
 
 @pytest.mark.parametrize(
@@ -83,3 +84,18 @@ class TestCrossing:
             some = np.sort(rng.choice(times, rng.integers(1, 6), replace=False))
             assert asked(some, 3e-4) <= 1.2 * whole
         assert asked(times, 2e-3) <= 1.2 * whole
+
+
+@pytest.mark.parametrize("scene", [COLORED_FRICTION, OBSTACLE.with_n(5)])
+def test_thresholds_beside_the_start_are_refused(scene):
+    """All grids agree that paths cross at once there; Monte Carlo answers."""
+    with pytest.raises(ToleranceError, match="threshold at 1e-05 from the start"):
+        PlaneProblem(scene, -1e-5, 1.0, np.array([1.0]))
+    run = ns.crossing_probability(scene, 1e-5, [0.005, 0.05], tol=1e-2)
+    assert run.attrs["method"] == "monte_carlo"
+    assert run.probability[0] < 0.05 < 0.5 < run.probability[1]
+
+
+def test_thresholds_that_the_driven_variable_crosses_are_not():
+    """The grid is made for the shortest time in that variable."""
+    PlaneProblem(PLASTIC.with_n(5), -1e-3, 1e-3, np.array([1e-3]))

@@ -24,6 +24,22 @@ def test_one_fit_serves_many_times(offset):
     assert np.max(np.abs(found - erfc(0.5 / np.sqrt(times)))) < bound(accuracy, 0.01, 680, 100)
 
 
+@pytest.mark.parametrize("scale", [1e-20, 1e20])
+def test_units_of_time_do_not_matter(scale):
+    """Poles are found where all of them are huge or tiny."""
+    times, accuracy = scale * np.geomspace(0.1, 100.0, 40), 1e-8
+    found = inverted(
+        lambda z: np.array([np.exp(-np.sqrt(scale * z))]),
+        0.01 / scale,
+        np.zeros(1),
+        accuracy,
+        False,
+        0.0,
+    ).at(times)
+    error = np.max(np.abs(found - erfc(0.5 / np.sqrt(times / scale))))
+    assert error < bound(accuracy, 0.01, 680, 100)
+
+
 def test_small_values_keep_relative_accuracy():
     """The same through the saddle point near 1/(4 t^2), where erfc(5) = 1.5e-12.
 

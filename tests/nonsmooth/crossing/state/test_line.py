@@ -6,6 +6,7 @@ import pytest
 from scipy import special
 
 import nonsmooth as ns
+from nonsmooth.errors import ToleranceError
 
 LINEAR = ns.Scene("elasto_plastic")  # without a potential y is an Ornstein-Uhlenbeck process
 
@@ -119,3 +120,13 @@ def test_a_potential_that_elements_do_not_resolve_is_refused():
     scene = ns.Scene("friction", noise=noise)
     with pytest.raises(ns.NonsmoothError, match="use method='monte_carlo'"):
         ns.state_crossing_probability(scene, "eta", 20.0, [1.0], method="deterministic")
+
+
+def test_starts_where_the_potential_rounds():
+    """Refused at once by the solver, and answered by paths."""
+    scene = LINEAR.with_start({"y": 1e9})
+    with pytest.raises(ToleranceError, match="too far in the tails"):
+        ns.state_crossing_probability(scene, "y", 2e9, [1.0], method="deterministic")
+    found = ns.state_crossing_probability(scene, "y", 2e9, [1.0], tol=1e-2)
+    assert found.attrs["method"] == "monte_carlo"
+    assert found.probability[0] == 0
