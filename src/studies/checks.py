@@ -12,6 +12,7 @@ import yaml
 
 from nonsmooth.errors import NonsmoothError, ToleranceError, quoted
 from nonsmooth.paths.absorption.envelope import scales
+from nonsmooth.progress import bar
 from reproduction.configuration.schema import shown, validate
 from reproduction.errors import ConfigError, dotted
 from studies.answers import arguments, meanings, rehearse
@@ -111,24 +112,31 @@ def _check_scene(study, name, parameters):
 
 def _check_meaning(study):
     """Make every scene once, or of a sweep its corners, and read all quantities."""
-    for number, (name, parameters) in enumerate(_examples(study)):
+    examples = _examples(study)
+    with bar("checking scenes", len(examples)) as advance:
+        for number, (name, parameters) in enumerate(examples):
+            _check_example(study, name, parameters, number < REHEARSED)
+            advance(1)
+
+
+def _check_example(study, name, parameters, rehearsed):
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            thing, units = scene_of(parameters, study.units)
+    except NonsmoothError as error:
+        raise _located(study, name, error, parameters) from None
+    for question_name, question in study.questions.items():
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                thing, units = scene_of(parameters, study.units)
-        except NonsmoothError as error:
-            raise _located(study, name, error, parameters) from None
-        for question_name, question in study.questions.items():
-            try:
-                given = arguments(question, units, meanings(question, parameters))
-                _check_envelope(question, given, units)
-                if number < REHEARSED:
-                    rehearse(thing, question, given)
-            except ToleranceError as error:
-                if error.result is None:
-                    raise _about(question_name, question, name, error) from None
-            except NonsmoothError as error:
+            given = arguments(question, units, meanings(question, parameters))
+            _check_envelope(question, given, units)
+            if rehearsed:
+                rehearse(thing, question, given)
+        except ToleranceError as error:
+            if error.result is None:
                 raise _about(question_name, question, name, error) from None
+        except NonsmoothError as error:
+            raise _about(question_name, question, name, error) from None
 
 
 def _about(name, question, scene, error):

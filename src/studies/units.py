@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 from tokenize import TokenError
 from typing import Any
 
@@ -57,8 +57,18 @@ def in_si(value: Any, unit: str) -> float:
     """
     if isinstance(value, int | float) and not isinstance(value, bool):
         value = str(value)
-    example = f"write such as '2 {unit}'" if unit != "1" else "write a number, or such as '5 %'"
-    found = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if not isinstance(value, str):
+        raise ConfigError(f"{shown(value)} is no number with a unit; {_example(unit)}")
+    return _read(value, unit)
+
+
+def _example(unit):
+    return f"write such as '2 {unit}'" if unit != "1" else "write a number, or such as '5 %'"
+
+
+@lru_cache(maxsize=4096)  # scenes have most of their quantities in common
+def _read(value, unit):
+    example, found = _example(unit), _QUANTITY.fullmatch(value)
     if found is None:
         raise ConfigError(f"{shown(value)} is no number with a unit; {example}")
     number, own = float(found[1]), found[2].strip().replace("²", "^2").replace("³", "^3")

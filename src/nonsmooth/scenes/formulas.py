@@ -106,8 +106,9 @@ def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
         if it is larger than `tuning.FORMULA` allows.
     """
     try:
-        tree, line = _syntax_tree(text)
-        return _Reader(line, variables).expression(tree)
+        if not isinstance(text, str):
+            raise ExpressionError("it is not text; write it in quotes")
+        return _parsed(text, tuple(variables))
     except ExpressionError as error:
         reason = str(error)
     except RecursionError:
@@ -115,10 +116,14 @@ def parse(text: str, variables: Iterable[sympy.Symbol]) -> sympy.Expr:
     raise ExpressionError(f"cannot read the formula {quoted(text)}: {reason}")
 
 
+@lru_cache(maxsize=256)  # sweeps ask for the same formulas again and again
+def _parsed(text, variables):
+    tree, line = _syntax_tree(text)
+    return _Reader(line, variables).expression(tree)
+
+
 def _syntax_tree(text):
     """Return the syntax tree of a formula, and the formula as one line."""
-    if not isinstance(text, str):
-        raise ExpressionError("it is not text; write it in quotes")
     if len(text) > tuning.FORMULA.length:
         raise ExpressionError(f"it has {len(text)} characters; use at most {tuning.FORMULA.length}")
     line = " ".join(text.split())
