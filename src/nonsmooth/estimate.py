@@ -78,7 +78,7 @@ def not_negative(value: ArrayLike, error: ArrayLike) -> tuple[np.ndarray, np.nda
         smaller than what a value is below 0, it is at least that.
     """
     value, error = np.asarray(value), np.asarray(error)
-    return np.maximum(value, 0.0), np.maximum(error, -value)
+    return np.maximum(value, 0.0), np.maximum(error, 0.0 - value)
 
 
 def require(met: bool, value: float, error: float, tol: float, cure: str = "loosen tol") -> None:

@@ -248,7 +248,7 @@ def _attempts(scene, thresholds, horizons, p, given):
     attempts = [("deterministic", {})]
     if tol >= choice.sampled_tolerance or "tol" not in given:
         attempts.append(("monte_carlo", {"most": choice.sampled_steps}))
-    order = _order_that_suffices(scene, p, tol, "tol" in given)
+    order = _order_that_suffices(scene, p, horizons[-1], tol, "tol" in given)
     formula = [] if order is None else [("corrected", {"order": order, "tol": tol})]
     if "tol" not in given:
         return formula + attempts
@@ -269,8 +269,8 @@ def _attempts(scene, thresholds, horizons, p, given):
     return attempts
 
 
-def _order_that_suffices(scene, p, tol, given):
-    """Return the order of the corrected formula that meets a tolerance at so large a p, or None.
+def _order_that_suffices(scene, p, last, tol, given):
+    """Return the order of the corrected formula that meets a tolerance at so late times, or None.
 
     In one variable, a solver is as fast up to where its rounding shows; a given tolerance, which
     may be a loose one, is left to the formula before.
@@ -283,7 +283,8 @@ def _order_that_suffices(scene, p, tol, given):
     if not scene.is_line:
         return None
     early = given and scene.is_odd() and tol * p**2 >= choice.least_corrected
-    return highest_order(scene) if early or p >= choice.rounded else None
+    late = p * last * scene.damping >= choice.rounded
+    return highest_order(scene) if early or late else None
 
 
 def _asymptotic(scene, thresholds, horizons, p, seed, threads):

@@ -42,12 +42,15 @@ def averaged(
     t = times[late, None]
     root = 2 * np.sqrt(spread * t)  # standard deviation times sqrt(2)
     reach = tuning.RANDOM_CLOCK.reach / np.sqrt(2) * root
-    # equal steps of the square root: the function may rise over a time much shorter than the reach
-    first = np.sqrt(np.maximum(t - reach, 0.0))
-    step = (np.sqrt(t + reach) - first) / tuning.RANDOM_CLOCK.nodes
-    place = first + step * np.arange(1, tuning.RANDOM_CLOCK.nodes + 1)
-    clock = place**2
-    density = np.exp(-(((clock - t) / root) ** 2)) * (
+    # equal steps of the square root: the function may rise over a time much shorter than the reach.
+    # Distances are from its middle: the reach may be as small as the rounding of the time
+    middle = np.sqrt(t)
+    before = np.minimum(reach, t) / (middle + np.sqrt(np.maximum(t - reach, 0.0)))
+    step = (before + reach / (middle + np.sqrt(t + reach))) / tuning.RANDOM_CLOCK.nodes
+    beyond = step * np.arange(1, tuning.RANDOM_CLOCK.nodes + 1) - before
+    place, later = middle + beyond, beyond * (2 * middle + beyond)
+    clock = t + later
+    density = np.exp(-((later / root) ** 2)) * (
         2 / (np.sqrt(np.pi) * root) - erfcx((clock + t) / root) / (2 * spread)
     )
     mean[late] = np.sum(2 * place * step * density * function(clock), axis=1)

@@ -20,7 +20,8 @@ class MethodChoice:
     seconds_corrected: tuple[float, float] = (0.05, 5.0)
     # least error of the corrected formula of the order 3, times p^2; fitted: as above
     least_corrected: float = 0.03
-    # p from which on rounding, some 5e-15 p, keeps the solver from 1e-7; fitted: friction, n = 100
+    # relaxation times from which on rounding, some 5e-15 each, keeps the solver from 1e-7; fitted:
+    # friction, n = 100
     rounded: float = 1e7
     # error of the order 1 for two variables, times p, above which it is tried; fitted: below 2 for
     # the models at unit damping, b = 0.5 or 1

@@ -63,10 +63,10 @@ def require_possible(
         The message begins with `what`, such as the best value and its error; it has the `result`.
     """
     if paths * steps > most:
-        reachable = tol * math.sqrt(paths * steps / most)
+        reachable = 1.1 * tol * math.sqrt(paths * steps / most)  # more than rounding takes away
         raise ToleranceError(
             f"{what}; tol = {tol:g} would take Monte Carlo {paths:.1e} paths of {steps:.1e} steps; "
-            f"use tol >= {reachable:.1g}",
+            f"use tol >= {reachable:.2g}",
             result,
         )
 

@@ -106,7 +106,7 @@ def mean_time_to_failure(
 
     def present(found):
         way, value, error = found
-        return Estimate(value / p, error / p, way, time.perf_counter() - began)
+        return Estimate(float(value / p), float(error / p), way, time.perf_counter() - began)
 
     return answered(
         lambda: first_answer([partial(attempt, method)], error=lambda found: found[2]),

@@ -232,7 +232,9 @@ class _Question:
             if not isinstance(refused.result, xr.Dataset):
                 raise
             found, self._refusal = refused.result, str(refused)
-        self.attributes = found.attrs
+        taken = self.attributes.get("method", "").split(", ")
+        methods = dict.fromkeys([*filter(None, taken), found.attrs["method"]])
+        self.attributes = found.attrs | {"method": ", ".join(methods)}
         return found
 
     def tolerance(self, targets: list[float]) -> float | None:
@@ -274,7 +276,7 @@ class _Question:
             )
         if sampled:
             self._given["method"] = "monte_carlo"
-            found = _on_grids(curves, targets, guesses, sense, tol)
+            found = _on_grids(curves, targets, guesses, sense, self.tolerance(targets))
         else:
             found = [
                 solved_root(partial(_one, partial(curve, k), tol), target, guess, sense)

@@ -29,3 +29,12 @@ class TestRandomClock:
         """The clock is the time, and nothing has passed before 0."""
         found = averaged(lambda s: s**2, np.array([-1.0, 0.0, 3.0]), 0.0)
         assert found.tolist() == [0.0, 0.0, 9.0]
+
+    @pytest.mark.parametrize("time", [7.6e11, 1e14])
+    def test_small_spread_over_long_times(self, time):
+        """The clock strays by less than the time is rounded: its mean is the function there.
+
+        The curvature of the function would add the spread over the time, and the nodes 3e-7.
+        """
+        found = averaged(lambda s: s / (s + time), np.array([time]), 1e-12)
+        assert found[0] == pytest.approx(0.5, abs=3e-7)

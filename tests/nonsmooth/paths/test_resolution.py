@@ -1,12 +1,14 @@
 """The step and the number of paths that a tolerance asks for."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy import stats
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.paths.resolution import require_resolved
+from nonsmooth.paths.resolution import require_possible, require_resolved
 from nonsmooth.paths.simulation import simulate
 from references import FALSE_ALARM, FRICTION
 
@@ -31,6 +33,17 @@ def test_what_would_take_for_ever_is_refused():
     """The error is one line with a tolerance that would not."""
     with pytest.raises(ToleranceError, match="use tol >="):
         simulate(FRICTION, 10.0, tol=1e-9)
+
+
+@pytest.mark.parametrize("tol", [1e-9, 9.7e-5, 9.7e-3])
+def test_the_tolerance_advised_is_accepted(tol):
+    """The work falls with its square; rounding the number in the message takes nothing away."""
+    for work in (1.0001, 1.2, 40.0, 1e9):
+        with pytest.raises(ToleranceError) as refused:
+            require_possible(work, 1.0, "no answer", tol, most=1.0)
+        advised = float(re.search(r"use tol >= (.*)", str(refused.value))[1])
+        assert tol < advised
+        require_possible(work * (tol / advised) ** 2, 1.0, "no answer", advised, most=1.0)
 
 
 def test_a_step_above_all_time_scales_is_refused():

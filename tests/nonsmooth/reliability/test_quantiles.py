@@ -112,3 +112,17 @@ def test_guesses_of_times(power, level):
     """Reaches that are powers of the time are inverted to within the factor asked for."""
     guess = typical_time(lambda time: 3 * time**power, level, 100.0)
     assert 0.5 < (guess / (level / 3) ** (1 / power)) ** power < 2
+
+
+@pytest.mark.slow
+def test_what_takes_many_relaxation_times_is_left_to_the_formula():
+    """The solver rounds there, and said 8.9e11 +- 1.3e13; W at that time is known to 1e-9."""
+    scene = ns.Scene("friction", damping=1e6)
+    found = ns.failure_time(scene, 1.0).squeeze()
+    assert found.attrs["method"] == "corrected"
+    # int g is a Brownian motion of variance gamma2 t there: W_star(1 / gamma, t) = 1/2
+    gamma2 = ns.asymptotic_variance(scene).value
+    limit = optimize.brentq(
+        lambda T: float(ns.brownian_crossing(1 / np.sqrt(gamma2), T)) - 0.5, 1e11, 1e13
+    )
+    assert float(found["time"]) == pytest.approx(limit, rel=1e-5)
