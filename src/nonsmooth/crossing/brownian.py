@@ -40,8 +40,14 @@ def _keeping_coordinates(title: str) -> Callable[[Function], Function]:
         def evaluate(b, T, lower=None):
             if not any(isinstance(one, xr.DataArray) for one in (b, T, lower)):
                 return function(b, T, lower)
-            lower = -xr.DataArray(b) if lower is None else lower
-            found = xr.apply_ufunc(function, b, T, lower)
+            given = (b, T) if lower is None else (b, T, lower)
+            try:
+                found = xr.apply_ufunc(function, *given)
+            except ValueError:  # of labels and sizes; wrong values are SceneErrors
+                raise SceneError(
+                    "b, T and lower do not fit together: a dimension has several sizes or "
+                    "coordinates, or no name; give each list as an xarray.DataArray with its name"
+                ) from None
             return found.rename(None).assign_attrs(long_name=title, units="1")
 
         return evaluate

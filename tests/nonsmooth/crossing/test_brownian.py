@@ -3,6 +3,7 @@
 import mpmath
 import numpy as np
 import pytest
+import xarray as xr
 
 import nonsmooth as ns
 from nonsmooth.crossing.brownian import asymptotic_crossing, brownian_exit, brownian_exit_density
@@ -139,6 +140,31 @@ def test_levels_on_the_wrong_side_are_refused(arguments, cure):
     for function in FUNCTIONS:
         with pytest.raises(SceneError, match=cure):
             function(*arguments)
+
+
+@pytest.mark.parametrize(
+    ("b", "T"),
+    [
+        (xr.DataArray(0.5), [0.5, 1.0]),
+        (xr.DataArray([0.5], dims="b"), [0.5, 1.0]),
+        (xr.DataArray([0.5, 1.0], dims="b"), [[0.5], [1.0]]),
+        (xr.DataArray([0.5, 1.0], dims="b"), xr.DataArray([0.5, 1.0, 2.0], dims="b")),
+        (xr.DataArray([1.0], [("b", [1])]), xr.DataArray([1.0], [("b", [2])])),
+    ],
+)
+def test_lists_that_do_not_fit_labelled_ones_are_refused(b, T):
+    """A dimension has one size and one set of coordinates, and the result a name for each."""
+    for function in FUNCTIONS:
+        for lower in (None, -2.0):
+            with pytest.raises(SceneError, match="do not fit together: .*with its name"):
+                function(b, T, lower)
+
+
+def test_labels_do_not_hide_what_is_wrong():
+    """Texts in a labelled array are refused as they are in a plain one."""
+    for function in FUNCTIONS:
+        with pytest.raises(SceneError, match="give numbers"):
+            function(xr.DataArray(["a"], dims="b"), 1.0)
 
 
 def test_known_value():
