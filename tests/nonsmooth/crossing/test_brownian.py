@@ -156,7 +156,7 @@ def test_lists_that_do_not_fit_labelled_ones_are_refused(b, T):
     """A dimension has one size and one set of coordinates, and the result a name for each."""
     for function in FUNCTIONS:
         for lower in (None, -2.0):
-            with pytest.raises(SceneError, match="do not fit together: .*with its name"):
+            with pytest.raises(SceneError, match=r"do not fit together: .*with its name"):
                 function(b, T, lower)
 
 
