@@ -141,7 +141,11 @@ def _edges(asked, phi, knot, first_time):
 
 
 def _probabilities(asked, edges, phi, times, degree):
-    """Probability to have left the interval at some times, and the slowest rate."""
+    """Return the probability to have left at some times, and the rate that rounding is relative to.
+
+    The slowest rate may be exp(-60) of the next one. Entries of the matrices are of the size of the
+    rates of functions that change within the well, such as the second one; all rates round like it.
+    """
     lowest = phi(edges).min()
     elements = spectral_elements.weighted(edges, lambda at: phi(at) - lowest, degree)
     mass, sigma, inner = elements.products(), asked.scene.noise.sigma, slice(1, -1)
@@ -150,4 +154,4 @@ def _probabilities(asked, edges, phi, times, degree):
     rates, vectors = modes(mass[inner, inner], stiffness, slow)
     at = continuous(edges, degree).interpolation(asked.start).toarray()[0, inner]
     weight = (mass[inner].sum(axis=1) @ vectors) * (at @ vectors)
-    return 1 - np.exp(-np.outer(times, rates)) @ weight, rates[0]
+    return 1 - np.exp(-np.outer(times, rates)) @ weight, rates[1]

@@ -114,6 +114,18 @@ def test_a_level_far_in_the_tails_needs_no_elements():
     assert np.all(found["probability"] <= found["probability_error"])
 
 
+@pytest.mark.parametrize("k", range(20))
+def test_levels_that_are_never_reached(k):
+    """At 12 to 60 standard deviations W < 1e-28: all that is found is rounding, and stated."""
+    rng = np.random.default_rng(1000 + k)
+    damping, sigma = 10 ** rng.uniform(-4, 9), 10 ** rng.uniform(-3, 3)
+    scene = ns.Scene("elasto_plastic", damping=damping, noise=ns.White(sigma))
+    level = rng.uniform(12, 60) * sigma / np.sqrt(2 * damping)
+    times = np.sort(10 ** rng.uniform(-2, 3, 3)) / damping
+    found = ns.state_crossing_probability(scene, "y", level, times, method="deterministic")
+    assert np.all(found["probability"] <= found["probability_error"])
+
+
 def test_a_potential_that_elements_do_not_resolve_is_refused():
     """In one line, before matrices are made."""
     noise = ns.Langevin("eta**4/4 - 100*eta**2/2", 0.1)
