@@ -190,7 +190,7 @@ def _compiled(kind, confined, what):
         }
     ).subs(equations.U(x), _U)
     terms = sympy.Add.make_args(sympy.expand(expression))
-    return sympy.lambdify((*STATE_VARIABLES, *_PLACES, *_PARAMETERS), terms, modules="numpy")
+    return sympy.lambdify((*STATE_VARIABLES, *_PLACES, *_PARAMETERS), terms, modules=np)
 
 
 def evaluate(
