@@ -32,6 +32,7 @@ from workflow.experiment import (
     swept,
 )
 from workflow.failures import hints
+from workflow.forked_jobs import fork_scripts
 from workflow.studies import Studies
 
 if module:
@@ -95,6 +96,10 @@ onstart:
     # There is no limit of jobs per second. With one, snakemake looks at all that waits once more a
     # second after each look, which every finished job adds to: it would take half a core.
     workflow.scheduler.job_rate_limiter = None
+    # the server takes as long to start as three jobs
+    many = sum(job.rule.script is not None for job in workflow.dag.needrun_jobs()) > 6
+    if many and sys.platform == "linux" and workflow.is_main_process:
+        fork_scripts()
 
 
 onerror:

@@ -1,0 +1,116 @@
+"""Scripts that a server forks end as those that are started by a command."""
+
+import signal
+import subprocess
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from snakemake.benchmark import BenchmarkRecord
+
+from workflow.dependencies import PACKAGES
+from workflow.forked_jobs import ForkServer
+
+
+@pytest.fixture(scope="module")
+def server():
+    """Serve the tests of this file."""
+    with ForkServer() as server:
+        yield server
+
+
+@pytest.fixture
+def run(server, tmp_path):
+    """Write a script and let the server run it, once it is ready."""
+
+    def run(text, environment=None, record=None, name="script.py", server=server):
+        script = tmp_path / name
+        script.write_text(text)
+        patience = time.monotonic() + 60
+        while not server.run(str(script), environment or {}, record):
+            assert time.monotonic() < patience
+            time.sleep(0.05)
+
+    return run
+
+
+def test_a_script_is_the_main_program(run, tmp_path):
+    """With its own arguments, environment and folder of modules."""
+    (tmp_path / "beside.py").write_text("VALUE = 'beside'")
+    run(
+        "import os, sys\n"
+        "from pathlib import Path\n"
+        "from beside import VALUE\n"
+        "assert __name__ == '__main__'\n"
+        "assert sys.argv == [__file__]\n"
+        "Path(__file__).with_name('found').write_text(os.environ['GIVEN'] + VALUE)\n",
+        {"GIVEN": "given "},
+    )
+    assert (tmp_path / "found").read_text() == "given beside"
+
+
+def test_libraries_are_there_and_sources_of_this_repository_are_not(run):
+    """What may be edited during a run is imported by each job."""
+    run(
+        "import sys\n"
+        "assert {'xarray', 'numba', 'sympy', 'matplotlib.pyplot'} <= set(sys.modules)\n"
+        f"assert not set({PACKAGES}) & set(sys.modules)"
+    )
+
+
+def test_an_edited_module_is_imported_anew(run, tmp_path):
+    """The second job has the second value."""
+    for value in (1, 22):
+        (tmp_path / "edited.py").write_text(f"VALUE = {value}")
+        run(f"import edited; assert edited.VALUE == {value}")
+
+
+@pytest.mark.parametrize(
+    ("text", "status"),
+    [
+        ("raise SystemExit(3)", 3),
+        ("raise ValueError('told on the standard error')", 1),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", -signal.SIGKILL),
+    ],
+)
+def test_a_script_that_fails_says_how(run, text, status):
+    """By its exit code, or the signal that killed it."""
+    with pytest.raises(subprocess.CalledProcessError) as failed:
+        run(text)
+    assert failed.value.returncode == status
+
+
+def test_scripts_run_at_the_same_time(run):
+    """Each waits for what the other one writes."""
+    text = (
+        "import time\n"
+        "from pathlib import Path\n"
+        "Path(__file__).with_suffix('.here').touch()\n"
+        "while len(list(Path(__file__).parent.glob('*.here'))) < 2: time.sleep(0.01)\n"
+    )
+    with ThreadPoolExecutor() as pool:
+        list(pool.map(lambda name: run(text, name=name), ("one.py", "other.py")))
+
+
+def test_ctrl_c_ends_a_job(run):
+    """Though the server does not hear it."""
+    with pytest.raises(subprocess.CalledProcessError) as failed:
+        run("import os, signal; os.kill(os.getpid(), signal.SIGINT); import time; time.sleep(60)")
+    assert failed.value.returncode in (1, -signal.SIGINT)
+
+
+def test_what_a_script_needs_is_recorded(run):
+    """As of a command: seconds and memory."""
+    record = BenchmarkRecord()
+    run("import time; stop = time.monotonic() + 1\nwhile time.monotonic() < stop: pass", {}, record)
+    assert record.running_time >= 1
+    assert record.max_rss > 10  # MB
+
+
+def test_a_server_that_is_gone_runs_nothing(run, tmp_path):
+    """Its jobs are then started by the command."""
+    with ForkServer() as other:
+        run("", server=other)
+        other.process.kill()
+        other.process.wait()
+        assert not other.run(str(tmp_path / "script.py"), {})

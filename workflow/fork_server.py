@@ -1,0 +1,101 @@
+"""A process that imports the libraries of the jobs once, and forks a process for each of them.
+
+Most jobs are shorter than their imports. `forked_jobs` starts ``python -P fork_server.py N``, N the
+number of a socket, and asks it to run scripts. Modules of this repository are not imported before
+the fork: they may be edited during a run.
+"""
+
+import contextlib
+import gc
+import importlib
+import json
+import os
+import runpy
+import signal
+import socket
+import sys
+
+LIBRARIES = (
+    "matplotlib.backends.backend_agg",
+    "matplotlib.backends.backend_pdf",
+    "matplotlib.pyplot",
+    "mpmath",
+    "netCDF4",
+    "numba",
+    "pandas",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "scipy.optimize",
+    "scipy.sparse.linalg",
+    "scipy.special",
+    "snakemake.iocontainers",
+    "snakemake.script",
+    "sympy.tensor.tensor",
+    "threadpoolctl",
+    "tqdm",
+    "tylax",
+    "xarray",
+)
+LONGEST = 2**16  # bytes of a request
+
+
+def prepare() -> None:
+    """Import what jobs import, and what numba imports when it compiles for the first time."""
+    for library in LIBRARIES:
+        with contextlib.suppress(ImportError):  # a job that needs it says so
+            importlib.import_module(library)
+    with contextlib.suppress(ImportError):
+        import numba
+        import numpy as np
+
+        numba.njit(lambda values: np.exp(values).sum())(np.ones(1))
+    gc.collect()
+    gc.freeze()  # what is there stays: no job looks through it again
+
+
+def serve(requests: socket.socket) -> dict:
+    """Fork for every request; return in the process of a job, with what it is asked for.
+
+    The first word says that the server is ready. A request comes with a socket. There the server
+    tells the number of the process, waits for a word, and tells how the process has ended, as
+    `os.waitpid` does.
+
+    Parameters
+    ----------
+    requests : socket.socket
+        When it is closed at the other end, the server exits.
+
+    Returns
+    -------
+    dict
+        `script`, and `environment` besides that of the server.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the jobs
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for those that wait for jobs
+    requests.sendall(b"r")
+    while True:
+        request, sockets, _, _ = socket.recv_fds(requests, LONGEST, 1)
+        if not request:
+            sys.exit()
+        with socket.socket(fileno=sockets[0]) as answers:
+            if os.fork() == 0:
+                requests.close()
+                signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+                job = os.fork()
+                if job == 0:
+                    signal.signal(signal.SIGINT, signal.default_int_handler)
+                    return json.loads(request)
+                answers.sendall(b"%d\n" % job)
+                answers.recv(1)
+                answers.sendall(b"%d\n" % os.waitpid(job, 0)[1])
+                os._exit(0)
+
+
+if __name__ == "__main__":
+    channel = socket.socket(fileno=int(sys.argv[1]))
+    prepare()
+    task = serve(channel)
+    os.environ.update(task["environment"])
+    sys.argv[:] = [task["script"]]
+    sys.path.insert(0, os.path.dirname(task["script"]))
+    runpy.run_path(task["script"], run_name="__main__")
