@@ -13,7 +13,7 @@ SOURCES = ("src", "workflow", "benchmarks", "examples", "tests")
 LONGEST_BODY = 60  # lines of a function without its docstring
 MOST_FILES = 12  # in a folder of the packages
 # public in spite of their names: of named tuples, and what notebooks call
-PUBLIC = {"_replace", "_fields", "_asdict", "_make", "_repr_html_", "_repr_latex_"}
+PUBLIC = {"_replace", "_fields", "_asdict", "_make", "_repr_html_", "_repr_latex_", "_exit"}
 
 
 def files(*folders):

@@ -109,6 +109,7 @@ def test_grids_and_paths_agree(scene):
     assert abs(sampled.value - solved.value) <= 1.5 * sampled.error + solved.error
 
 
+@pytest.mark.slow
 def test_a_spring_without_exact_flow_is_simulated_by_euler_maruyama(scene, dead_zone):
     """A spring that acts within the gap too; E y^2 = sigma^2/(2 C_b) whatever the potential."""
     model = dead_zone(GAP, STIFFNESS)

@@ -17,6 +17,7 @@ SLOW = {
     "my_oscillator",
     "own_formulas",
     "rare_crossing",
+    "sliding_isolator",
     "which_method",
 }  # 5 s and more
 

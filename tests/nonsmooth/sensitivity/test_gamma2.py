@@ -81,7 +81,7 @@ def test_observable_with_the_parameter_in_it():
         (PLASTIC.with_n(20), "damping"),
         (PLASTIC.with_n(20), "n"),
         (OBSTACLE.with_n(20), "sigma"),
-        (ns.Scene("friction", "langevin", n=5), "n"),
+        pytest.param(ns.Scene("friction", "langevin", n=5), "n", marks=pytest.mark.slow),
         (ns.Scene("friction", n=5, potential="x**2/2", observable="x"), "n"),
     ],
 )

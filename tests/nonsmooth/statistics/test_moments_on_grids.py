@@ -159,6 +159,7 @@ def test_projection_against_the_whole_exponential():
         assert abs(found[1, k] - exact[0]) <= 2 * inexact[1, k] + 1e-9 * (1 + tau)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_solved_is_refused(monkeypatch):
     """Three variables, n = inf and a tolerance out of reach are refused in one line each."""
     with pytest.raises(SceneError, match="method='monte_carlo'"):

@@ -134,6 +134,7 @@ class TestPathwise:
         for level in (1, 4, 8):
             assert paths.error(level)[0] < 1e-8  # the friction of n = 1e-9 is left
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("model", ["friction", "elasto_plastic", "obstacle"])
     def test_error_falls(self, model):
         """A sixteenth of the step: for strong order 1/2, the least of these, a quarter."""

@@ -16,7 +16,11 @@ from references import COLORED_FRICTION, OBSTACLE, PLASTIC
     ("start", "message"),
     [
         ({"y": 11.0}, "the start y = 11 is too far in the tails, beyond 3.7"),
-        ({"x": 2.16, "y": 3.7}, "on a coarse grid and not between 0 and 1"),
+        pytest.param(
+            {"x": 2.16, "y": 3.7},
+            "on a coarse grid and not between 0 and 1",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_starts_in_the_tails(start, message):
