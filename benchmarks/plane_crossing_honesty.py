@@ -2,10 +2,11 @@
 
 `python -m benchmarks.plane_crossing_honesty [first] [count] [tol] [paths]` draws random scenes with
 two state variables, intervals and p. It asks for five horizons, for one of them, for a fifth of the
-tolerance, and for Monte Carlo. The answer to the whole request may differ from the other two that
-are solved for by the errors of both, and from Monte Carlo by its own error, the bias of the step,
-and 4 standard errors. Each scene has a process of its own, which is ended after 300 seconds of
-processor time. A line per scene tells ratios and seconds on one core; the last lines sum up.
+tolerance, for Monte Carlo, and for the interval together with two others. The answer to the whole
+request may differ from the others that are solved for by the errors of both, and from Monte Carlo
+by its own error, the bias of the step, and 4 standard errors. Each scene has a process of its own,
+which is ended after 300 seconds of processor time. A line per scene tells ratios and seconds on one
+core; the last lines sum up.
 """
 
 import multiprocessing
@@ -24,7 +25,9 @@ STANDARD_ERRORS = 4.0  # false alarms: 6e-5 per probability
 LONGEST = 300.0  # largest t C_b of which paths are drawn
 FINER = 5.0  # the tolerance over that of the finer answer
 LIMIT = 300  # seconds of processor time for a scene
-RATIOS = "part", "finer", "paths"
+RATIOS = "part", "finer", "paths", "among"
+SOLVED = "part", "finer", "among"
+OTHERS = 0.4, 1.8  # times as far as the levels are those of the intervals beside it
 
 
 def draw(rng):
@@ -52,10 +55,13 @@ def draw(rng):
 
 
 def asked(scene, interval, times, tol):
-    """Answer, seconds, and whether `tol` was met; the answer is None if there is none."""
-    began = time.process_time()
+    """Answer, seconds, and whether `tol` was met; the answer is None if there is none.
+
+    With several intervals the answer is that of the first.
+    """
+    began, intervals = time.process_time(), np.atleast_2d(interval)
     try:
-        found, met = deterministic_crossing(scene, np.array([interval]), times, tol), True
+        found, met = deterministic_crossing(scene, intervals, times, tol), True
     except NonsmoothError as error:
         found, met = getattr(error, "result", None), False
     return found, time.process_time() - began, met
@@ -103,6 +109,9 @@ def compare(seed, tol, paths, send):
     send(paths=ratio_to_paths(whole, scene, interval, times, paths, seed))
     finer, seconds, met = asked(scene, interval, times, tol / FINER)
     send(finer=ratio(whole, finer), finer_seconds=seconds, finer_met=met)
+    several = np.outer((1.0, *OTHERS), interval)
+    among, seconds, _ = asked(scene, several, times, tol)
+    send(among=ratio(whole, among), among_seconds=seconds)
 
 
 def row(seed, tol, paths):
@@ -122,7 +131,7 @@ def row(seed, tol, paths):
         process.join()
     met = {True: "met", False: "refused", None: "unanswered"}[found.get("met")]
     ratios = ", ".join(f"{name} {found.get(name, np.nan):.2g}" for name in RATIOS)
-    times = ("seconds", "part_seconds", "finer_seconds")
+    times = ("seconds", *(f"{name}_seconds" for name in SOLVED))
     seconds = ", ".join(f"{found.get(name, np.nan):.1f}" for name in times)
     print(f"{seed}: {found['scene']}: {met}, {ratios}, seconds {seconds}", flush=True)
     return found
@@ -138,7 +147,7 @@ def main(first=0, count=100, tol=1e-3, paths=20_000):
         seen = np.array([r[name] for r in rows if np.isfinite(r.get(name, np.nan))])
         wrong, largest = int(np.sum(seen > 1)), max(seen, default=0.0)
         print(f"{name}: {len(seen)} compared, {wrong} wrong, largest ratio {largest:.2g}")
-    for name in ("seconds", "part_seconds", "finer_seconds"):
+    for name in ("seconds", *(f"{name}_seconds" for name in SOLVED)):
         seen = [r[name] for r in rows if name in r]
         print(f"{name}: median {np.median(seen):.1f}, longest {max(seen):.1f}, of {len(seen)}")
 

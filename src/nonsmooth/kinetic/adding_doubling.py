@@ -88,7 +88,9 @@ def slabs(grid: PlaneOrdinates, z: complex, thickness: float) -> Iterator[Slab]:
         made = made.doubled()
 
 
-def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> np.ndarray:
+def fields(
+    grid: PlaneOrdinates, z: complex, thickness: float, thin: float, halvings: int = 0
+) -> np.ndarray:
     """Solve the kinetic equation in a slab, with h = 1 where the flow leaves.
 
     Parameters
@@ -100,6 +102,8 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
         Infinite for a half space.
     thin : float
         Thickness, at most, of the first slab, from which the others are made.
+    halvings : int
+        How often a slab of finite thickness is halved; it is solved in each half, too.
 
     Returns
     -------
@@ -113,7 +117,8 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
         If h, which is between 0 and 1, is much larger.
     """
     settings, ones = tuning.ADDING_DOUBLING, grid.ones[: len(grid.speeds)]
-    made = []
+    made: list[Slab] = []
+    doublings = 0
     if math.isfinite(thickness):
         doublings = max(settings.fewest, math.ceil(math.log2(thickness / thin)))
         thin = thickness / 2**doublings
@@ -123,6 +128,22 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
             break
         if len(made) > settings.fewest and np.max(np.abs(slab.transmission)) < settings.opaque:
             break
+    # what is thicker than the last, opaque one is as good as it
+    smallest = min(len(made), 1 + doublings - halvings) if doublings else len(made)
+    found = [
+        field
+        for count in range(len(made), smallest - 1, -1)
+        for field in _fields(made[:count], ones)
+    ]
+    flow = np.sqrt(grid.masses * np.abs(grid.speeds))
+    size = np.max(np.linalg.norm(flow * found, axis=1)) / np.linalg.norm(flow * ones)
+    if not size < settings.unstable:
+        raise UnstableError(f"the slabs of {len(ones)} ordinates amplify by {size:.2g}")
+    return np.array(found).T
+
+
+def _fields(made, ones):
+    """Solutions in the last of some slabs, each of which is twice as thick as the one before."""
     found = [ones, (made[-1].reflection + made[-1].transmission) @ ones]
     parts = [(len(made) - 2, ones, ones)]
     while parts:
@@ -131,13 +152,9 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
         found += [up, down]
         if size > 0:  # the part at the face, and in the middle only large ones
             parts.append((size - 1, below, down))
-            if size > len(made) - settings.resolved:
+            if size > len(made) - tuning.ADDING_DOUBLING.resolved:
                 parts.append((size - 1, up, above))
-    flow = np.sqrt(grid.masses * np.abs(grid.speeds))
-    size = np.max(np.linalg.norm(flow * found, axis=1)) / np.linalg.norm(flow * ones)
-    if not size < settings.unstable:
-        raise UnstableError(f"the slabs of {len(ones)} ordinates amplify by {size:.2g}")
-    return np.array(found).T
+    return found
 
 
 def _step(scattering, speeds, thickness):

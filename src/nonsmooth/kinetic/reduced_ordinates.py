@@ -34,29 +34,31 @@ class ReducedOrdinates:
     grid: PlaneOrdinates
     basis: np.ndarray
 
-    def first_passage(self, z: complex, lower: float, upper: float) -> complex:
-        """E exp(-z tau), tau the first time that int_0^t g leaves (lower, upper).
+    def first_passage(self, z: complex, intervals: np.ndarray) -> np.ndarray:
+        """E exp(-z tau), tau the first time that int_0^t g leaves an interval.
 
         Parameters
         ----------
         z : complex
-        lower, upper : float
-            Of opposite signs; one may be infinite.
+        intervals : numpy.ndarray, shape (m, 2)
+            Levels of opposite signs; one of the two may be infinite.
 
         Returns
         -------
-        complex
+        numpy.ndarray of complex, shape (m,)
         """
         grid, signs = self.grid, np.sign(self.grid.speeds)[:, None]
         parts, weights = grid.eliminated(z), grid.masses[:, None] * self.basis
         even = weights.T @ parts[EVEN].applied(self.basis)
         odd = (signs * weights).T @ parts[ODD].applied(signs * self.basis)
         ones = weights.T @ (np.abs(grid.speeds) * grid.ones[: len(signs)])
-        e, o = _at_start(even, odd, ones, lower, upper)
-        return (
-            parts[EVEN].start_row() @ (self.basis @ e)
-            + parts[ODD].start_row() @ (signs[:, 0] * (self.basis @ o))
-        ).item()
+        rates, modes = _modes(even, odd)
+        rows = parts[EVEN].start_row(), parts[ODD].start_row()
+        values = []
+        for interval in intervals:
+            e, o = _at_start(rates, modes, even, ones, *interval)
+            values.append(rows[0] @ (self.basis @ e) + rows[1] @ (signs[:, 0] * (self.basis @ o)))
+        return np.array(values).reshape(len(intervals))
 
 
 def reduced(grid: PlaneOrdinates, fields: np.ndarray, accuracy: float) -> ReducedOrdinates:
@@ -84,9 +86,8 @@ def reduced(grid: PlaneOrdinates, fields: np.ndarray, accuracy: float) -> Reduce
     return ReducedOrdinates(grid, np.column_stack([ones, kept]) / flow[:, None])
 
 
-def _at_start(even, odd, ones, lower, upper):
+def _at_start(rates, modes, even, ones, lower, upper):
     """Even and odd parts at x = 0, if h = 1 where the flow leaves."""
-    rates, modes = _modes(even, odd)
     other = even @ modes / rates
     if not (np.isfinite(lower) and np.isfinite(upper)):
         decay, side = np.exp(-rates * min(upper, -lower)), 1 if np.isfinite(upper) else -1

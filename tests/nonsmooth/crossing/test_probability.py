@@ -5,10 +5,11 @@ import pytest
 from scipy import special
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage import line
+from nonsmooth.crossing.first_passage import line, plane
 from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
 from nonsmooth.kinetic import case_modes
-from references import FRICTION, GAMMA2, SKEWED, W_STAR
+from nonsmooth.kinetic.adding_doubling import fields
+from references import COLORED_FRICTION, FRICTION, GAMMA2, OBSTACLE, SKEWED, W_STAR
 
 HORIZONS = np.linspace(0, 2, 11)[1:]
 
@@ -196,11 +197,18 @@ def test_each_row_of_several_thresholds_is_that_threshold(thresholds, method):
             assert np.array_equal(run[name][row], one[name])
 
 
-@pytest.mark.parametrize("scene", [FRICTION, pytest.param(SKEWED, marks=pytest.mark.slow)])
-def test_solved_thresholds_agree_with_each_alone(scene):
+@pytest.mark.parametrize(
+    ("scene", "p", "tol"),
+    [
+        (FRICTION, 2.0, 1e-4),
+        pytest.param(SKEWED, 2.0, 1e-4, marks=pytest.mark.slow),
+        pytest.param(OBSTACLE, 100.0, 1e-3, marks=pytest.mark.slow),
+    ],
+)
+def test_solved_thresholds_agree_with_each_alone(scene, p, tol):
     """To the sum of errors, though they share grids; far ones have grids of their own."""
-    thresholds, asked = [(-0.3, 0.3), (-0.4, 0.7), (-np.inf, 0.9), (-3.0, 3.0)], {"tol": 1e-4}
-    asked |= {"horizons": [0.5, 2.0], "p": 2.0, "method": "deterministic"}
+    thresholds, asked = [(-0.3, 0.3), (-0.4, 0.7), (-np.inf, 0.9), (-3.0, 3.0)], {"tol": tol}
+    asked |= {"horizons": [0.5, 2.0], "p": p, "method": "deterministic"}
     run = ns.crossing_probability(scene, thresholds, **asked)
     for row, threshold in enumerate(thresholds):
         one = ns.crossing_probability(scene, threshold, **asked)
@@ -227,6 +235,26 @@ def test_one_more_threshold_costs_little(monkeypatch):
         work.append(sum(solved))
     assert work[0] <= 2.5 * np.mean(work[1:])
     assert max(work[1:]) <= work[0]
+
+
+@pytest.mark.slow
+def test_thresholds_of_two_variables_share_slabs(monkeypatch):
+    """Three take no more of them than the one that takes most; each is solved for halves, too."""
+    made = []
+
+    def counted(grid, *arguments):
+        made.append(len(grid.speeds) ** 3)
+        return fields(grid, *arguments)
+
+    monkeypatch.setattr(plane, "fields", counted)
+    thresholds, work = [0.1, 0.2, 0.3], []
+    for asked in (thresholds, *thresholds):
+        made.clear()
+        ns.crossing_probability(
+            COLORED_FRICTION, asked, [2.0], p=100, method="deterministic", tol=1e-3
+        )
+        work.append(sum(made))
+    assert work[0] <= max(work[1:])
 
 
 def test_coordinates_of_several_thresholds():

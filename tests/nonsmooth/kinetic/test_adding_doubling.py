@@ -36,6 +36,15 @@ def test_fields_in_a_thick_slab_are_those_of_a_half_space():
     assert thick[:, 1] == pytest.approx(half[:, 1], abs=2e-4)
 
 
+def test_halves_are_solved_too():
+    """Bit for bit: the slabs of a half are among those of the whole."""
+    grid = coarse_ordinates(COLORED_FRICTION)
+    thin = 0.5 * grid.way
+    thicknesses = 2.0 ** np.array([9, 8, 7]) * thin
+    alone = [fields(grid, 1e-3, thickness, thin) for thickness in thicknesses]
+    assert np.array_equal(fields(grid, 1e-3, thicknesses[0], thin, 2), np.hstack(alone))
+
+
 def test_slabs_that_amplify_are_seen():
     """A generator that makes functions grow is no result."""
     grid = coarse_ordinates(COLORED_FRICTION)

@@ -21,10 +21,17 @@ from support import coarse_ordinates
 SCENES = {"friction": COLORED_FRICTION, "plastic": PLASTIC_STRAIN, "obstacle": OBSTACLE}
 
 
-def basis(grid, thickness, accuracy=1e-8, thin=0.005):
+def basis(grid, thickness, accuracy=1e-8, thin=0.005, halvings=0):
     """Few ordinates for rates between a thousandth of and ten times that of relaxation."""
-    found = [fields(grid, z, thickness, thin * grid.way) for z in 10.0 ** np.arange(-3, 1.1)]
+    found = [
+        fields(grid, z, thickness, thin * grid.way, halvings) for z in 10.0 ** np.arange(-3, 1.1)
+    ]
     return reduced(grid, np.hstack(found), accuracy)
+
+
+def passage(ordinates, z, lower, upper):
+    """Transform of the first passage out of one interval."""
+    return ordinates.first_passage(z, np.array([[lower, upper]]))[0]
 
 
 @pytest.fixture(scope="module")
@@ -62,9 +69,20 @@ class TestReducedOrdinates:
         fine, coarse = (basis(grid, thickness, accuracy) for accuracy in (1e-8, 1e-7))
         for z in (0.02, 0.5, 0.3 + 2.0j):
             exact = case_modes.modes(line, z).first_passage(*levels)
-            found, change = (made.first_passage(z, *levels) for made in (fine, coarse))
+            found, change = (passage(made, z, *levels) for made in (fine, coarse))
             assert abs(found - exact) <= 3 * abs(found - change) + 1e-7
             assert abs(found - exact) < 1e-5
+
+    def test_one_basis_serves_shorter_intervals(self, line):
+        """Solutions in the longest one and in its halves; errors as for an interval alone."""
+        intervals = np.array([[-2.0, 2.0], [-1.5, 1.2], [-0.4, 0.9], [-0.25, 0.25]])
+        grid = of_one_variable(line)
+        fine, coarse = (basis(grid, 4.0, accuracy, halvings=3) for accuracy in (1e-8, 1e-7))
+        for z in (0.02, 0.5, 0.3 + 2.0j):
+            exact = [case_modes.modes(line, z).first_passage(*levels) for levels in intervals]
+            found, change = (made.first_passage(z, intervals) for made in (fine, coarse))
+            assert np.all(np.abs(found - exact) <= 3 * np.abs(found - change) + 1e-7)
+            assert np.all(np.abs(found - exact) < 1e-5)
 
     @pytest.mark.slow
     @pytest.mark.parametrize("name", SCENES)
@@ -82,7 +100,7 @@ class TestReducedOrdinates:
             *_, made = islice(slabs(grid, z, end / 2 ** (doublings + more)), doublings + more + 1)
             inside = np.eye(len(ones)) - made.reflection
             found.append(row @ np.linalg.solve(inside, made.transmission @ ones))
-        few = basis(grid, 2 * end).first_passage(z, -end, end)
+        few = passage(basis(grid, 2 * end), z, -end, end)
         assert abs(few - found[1]) < abs(found[1] - found[0]) / (math.sqrt(2) - 1) + 2e-6
 
     @pytest.mark.slow
@@ -90,7 +108,7 @@ class TestReducedOrdinates:
     def test_exits_surely(self, name):
         """(1 - h) / z increases to the mean exit time as z falls, so that exit is certain."""
         few = basis(coarse_ordinates(SCENES[name]), 0.6)
-        mean = [(1 - few.first_passage(z, -0.3, 0.3).real) / z for z in (1e-2, 1e-4, 1e-6)]
+        mean = [(1 - passage(few, z, -0.3, 0.3).real) / z for z in (1e-2, 1e-4, 1e-6)]
         assert 0 < mean[0] < mean[1] < mean[2]
         assert mean[2] == pytest.approx(mean[1], rel=1e-4 * mean[2] + 1e-3)
 
@@ -107,12 +125,12 @@ class TestReducedOrdinates:
             scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(theta, theta))
             grid = plane_ordinates(scene, boxed(scene), PlaneLevel(5, 4, 8.0, 0.03, 1e-6), 10.0)
             few = basis(grid, 2 * level, 1e-7, 0.02)
-            gap.append(exact - few.first_passage(z, -level, level).real)
+            gap.append(exact - passage(few, z, -level, level).real)
         assert gap[0] / gap[1] == pytest.approx(4, rel=1 / 3)
 
     @pytest.mark.slow
     def test_one_wall_far_away_is_none(self):
         """A wall that is never reached changes nothing but the basis."""
         grid, z = coarse_ordinates(PLASTIC_STRAIN), 1.0
-        far = basis(grid, 40.3).first_passage(z, -40.0, 0.3)
-        assert far == pytest.approx(basis(grid, np.inf).first_passage(z, -np.inf, 0.3), abs=2e-6)
+        far = passage(basis(grid, 40.3), z, -40.0, 0.3)
+        assert far == pytest.approx(passage(basis(grid, np.inf), z, -np.inf, 0.3), abs=2e-6)

@@ -4,7 +4,7 @@ A scene becomes a first-passage problem: a `LineProblem` for one state variable,
 for two. It is solved on finer and finer levels until two of them agree.
 """
 
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from nonsmooth.crossing.first_passage import plane, tuning
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver, contour_solvers
 from nonsmooth.crossing.first_passage.line import Intervals, LineProblemFromAfar
-from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted
+from nonsmooth.crossing.first_passage.plane import PlaneGrids, PlaneProblem, inverted
 from nonsmooth.crossing.first_passage.problem import (
     DirectProblem,
     FirstPassageProblem,
@@ -33,8 +33,8 @@ def deterministic_crossing(
 ) -> dict[str, np.ndarray]:
     """P(int_0^t g leaves an interval (lower, upper) before t).
 
-    Intervals of one state variable share most of what is computed. Their grids then serve the most
-    demanding of them, which changes a probability within its error.
+    Intervals share most of what is computed. Grids and bases then serve the most demanding of
+    them, which changes a probability within its error.
 
     Parameters
     ----------
@@ -95,7 +95,8 @@ def _on_line(scene, intervals, times, tol):
     if depth_of_start > tuning.FAR_START.depth:
         return [partial(_from_afar, scene, *interval, times, tol) for interval in intervals]
     solvers = {}
-    for group in _of_similar_size(intervals):
+    nearest = np.min(np.abs(intervals), axis=1)
+    for group in _of_similar_size(nearest, tuning.LINE_GRIDS.similar):
         problems = Intervals(scene, intervals[group]).problems
         together = contour_solvers(problems, times, tol)
         for k, problem, solver in zip(group, problems, together, strict=True):
@@ -103,13 +104,12 @@ def _on_line(scene, intervals, times, tol):
     return [solvers[k] for k in range(len(intervals))]
 
 
-def _of_similar_size(intervals):
-    """Group indices of intervals whose nearest walls are about equally near."""
-    nearest = np.min(np.abs(intervals), axis=1)
-    order = np.argsort(nearest)
+def _of_similar_size(sizes, ratio):
+    """Group indices so that the largest size of a group is at most `ratio` times the smallest."""
+    order = np.argsort(sizes)
     groups = [[order[0]]]
     for k in order[1:]:
-        if nearest[k] <= tuning.LINE_GRIDS.similar * nearest[groups[-1][0]]:
+        if sizes[k] <= ratio * sizes[groups[-1][0]]:
             groups[-1].append(k)
         else:
             groups.append([k])
@@ -118,14 +118,24 @@ def _of_similar_size(intervals):
 
 def _in_plane(scene, intervals, times, tol):
     """Return what solves each interval, for two state variables."""
-    return [partial(_one_in_plane, scene, *interval, times, tol) for interval in intervals]
+    solvers, lengths = {}, intervals[:, 1] - intervals[:, 0]
+    for group in _of_similar_size(lengths, tuning.SLABS.similar):
+        grids = cache(partial(_plane_grids, scene, intervals[group]))
+        for k in group:
+            solvers[k] = partial(_one_in_plane, scene, *intervals[k], times, tol, grids)
+    return [solvers[k] for k in range(len(intervals))]
 
 
-def _one_in_plane(scene, lower, upper, times, tol):
+def _plane_grids(scene, intervals, times):
+    return PlaneGrids(scene, intervals, np.array(times))
+
+
+def _one_in_plane(scene, lower, upper, times, tol, grids):
     """Solve for two state variables: early times by steps, later ones by contours.
 
     Contours grow accurate with time, steps become many. In between, steps are tried where contours
-    miss the tolerance, and contours once more for the times that are left.
+    miss the tolerance, and contours once more for the times that are left. `grids` makes those for
+    some of the times, which other intervals may have made before.
     """
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
     reasons = ["the solution is not finite"]
@@ -134,7 +144,8 @@ def _one_in_plane(scene, lower, upper, times, tol):
         """Solve at some of the times; keep what has a smaller error than what is known."""
         if not here.any():
             return
-        problem = PlaneProblem(scene, lower, upper, times[here])
+        shared = grids(tuple(times[here]))
+        problem = PlaneProblem(scene, lower, upper, times[here], shared)
         try:
             found, stated = _part_by_part(problem, times[here], parts, solver, tol)
         except UnstableError as unstable:

@@ -32,60 +32,38 @@ def applies(scene: Scene) -> bool:
     )
 
 
-class PlaneProblem(LaplaceProblem):
-    """A scene with two state variables to which this module `applies`, and an interval.
+class PlaneGrids:
+    """Grids and bases of one scene that serve the same times, for one interval or several.
 
     A resolution is a triple: of the grid in the driven variable, in the other one, and of the basis
-    in which the grid is reduced. One grid serves all times.
+    in which the grid is reduced. One grid serves all times. The basis is taken from solutions in
+    the longest interval, and in halves of it if there are shorter ones.
 
     Parameters
     ----------
     scene : Scene
-    lower, upper : float
-        lower < 0 < upper, one of them possibly infinite.
+    intervals : numpy.ndarray, shape (m, 2)
+        All finite, or all with one infinite level.
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
+
+    Attributes
+    ----------
+    ends : dict
+        Half widths of the box, from symbols.
     """
 
-    def __init__(self, scene: Scene, lower: float, upper: float, times: np.ndarray):
-        self.scene, self.lower, self.upper = scene, lower, upper
-        self._times, self._ends = times, boxed(scene)
-        _require_resolved(scene, self._ends, min(-lower, upper))
+    def __init__(self, scene: Scene, intervals: np.ndarray, times: np.ndarray):
+        self.scene, self.ends = scene, boxed(scene)
+        self._intervals, self._times = intervals, times
+        lengths = intervals[:, 1] - intervals[:, 0]
+        self._length, self._halvings = lengths.max(), 0
+        if math.isfinite(self._length):
+            self._halvings = math.ceil(math.log2(self._length / lengths.min()))
         self._grids: dict[tuple, PlaneOrdinates] = {}
         self._known: dict[tuple, np.ndarray] = {}
         self._reduced: dict[tuple, ReducedOrdinates] = {}
-
-    @property
-    def settings(self) -> ContourSettings:
-        """How accurate the problem is."""
-        return tuning.PLANE
-
-    def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
-        """Return F on the coarsest grid; see `LaplaceProblem`."""
-        return self.transform((0, 0, 0), self._times, 0.0)
-
-    def transform(
-        self, resolution: tuple, times: np.ndarray, rarity: float
-    ) -> Callable[[complex], complex]:
-        """Return F on a grid of some resolution; see `LaplaceProblem`."""
-        ordinates = self.ordinates(*resolution)
-        return lambda z: ordinates.first_passage(z, self.lower, self.upper)
-
-    def mean_duration(self) -> float:
-        """Mean of the lesser of the first passage time and of an exponential one, for first steps.
-
-        The latter has the mean of a relaxation time.
-        """
-        z = self.scene.damping
-        mean = (1 - self.coarse_transform(z, 0.0)(z)).real / z
-        return max(mean, tuning.SLABS.shortest / z)
-
-    def largest_probability(self, time: float) -> float:
-        """Chernoff's bound of the probability, from a few small exponents."""
-        settings, transform = tuning.SLABS, self.coarse_transform(0.0, 0.0)
-        return min(
-            math.exp(s) * (abs(transform(s / time)) + settings.coarse) for s in settings.exponents
-        )
+        self._transforms: dict[tuple, dict] = {}
 
     def grid(
         self, driven: int, other: int, levels: tuning.PlaneGrids = tuning.PLANE_GRIDS
@@ -96,18 +74,18 @@ class PlaneProblem(LaplaceProblem):
         ----------
         driven, other : int
             Resolution of the variable that noise drives, and of the other.
-        levels : PlaneGrids
+        levels : tuning.PlaneGrids
             What a resolution means.
         """
         key = driven, other, levels
         if key not in self._grids:
             if ordinates_gibbs.applies(self.scene):
                 self._grids[key] = gibbs_ordinates(
-                    self.scene, self._ends, levels.gibbs(driven, other)
+                    self.scene, self.ends, levels.gibbs(driven, other)
                 )
             else:
                 level = levels.plane(driven, other)
-                self._grids[key] = plane_ordinates(self.scene, self._ends, level, self._early)
+                self._grids[key] = plane_ordinates(self.scene, self.ends, level, self._early)
         return self._grids[key]
 
     def tensor_grid(self, driven: int, other: int) -> TensorOrdinates:
@@ -119,7 +97,7 @@ class PlaneProblem(LaplaceProblem):
             As for `grid`.
         """
         level = tuning.STEPPED_GRIDS.plane(driven, other)
-        return tensor_ordinates(self.scene, self._ends, level, self._early)
+        return tensor_ordinates(self.scene, self.ends, level, self._early)
 
     @property
     def way(self) -> float:
@@ -130,6 +108,26 @@ class PlaneProblem(LaplaceProblem):
     def _early(self):
         """The shortest time of interest."""
         return min(self._times[0], 1 / self.scene.damping)
+
+    def transform(self, resolution: tuple[int, int, int], z: complex) -> dict:
+        """Compute F at a place, for all intervals: most of the time they have in common.
+
+        Parameters
+        ----------
+        resolution : tuple
+            Of the grid in both variables, and of the basis.
+        z : complex
+
+        Returns
+        -------
+        dict
+            From pairs of levels.
+        """
+        key = resolution, z
+        if key not in self._transforms:
+            found = self.ordinates(*resolution).first_passage(z, self._intervals)
+            self._transforms[key] = dict(zip(map(tuple, self._intervals), found, strict=True))
+        return self._transforms[key]
 
     def ordinates(self, driven: int, other: int, basis: int) -> ReducedOrdinates:
         """Reduce a grid.
@@ -160,7 +158,7 @@ class PlaneProblem(LaplaceProblem):
             grid = self.grid(driven, other)
             # what int g goes within a relaxation time, or within 1/z if this is shorter
             way = grid.way / (1 + z / self.scene.damping)
-            self._known[key] = fields(grid, z, self.upper - self.lower, thin * way)
+            self._known[key] = fields(grid, z, self._length, thin * way, self._halvings)
         return self._known[key]
 
     def _shifts(self, refined):
@@ -171,6 +169,73 @@ class PlaneProblem(LaplaceProblem):
         while math.log10(ends[1] / ends[0]) > settings.widest * parts:
             parts *= 2
         return np.geomspace(*ends, parts * 2**refined + 1)
+
+
+class PlaneProblem(LaplaceProblem):
+    """A scene with two state variables to which this module `applies`, and an interval.
+
+    Resolutions are those of `PlaneGrids`.
+
+    Parameters
+    ----------
+    scene : Scene
+    lower, upper : float
+        lower < 0 < upper, one of them possibly infinite.
+    times : numpy.ndarray, shape (k,)
+        Increasing, positive.
+    grids : PlaneGrids, optional
+        For the same times, if other intervals have them in common with this one.
+
+    Attributes
+    ----------
+    grids : PlaneGrids
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        lower: float,
+        upper: float,
+        times: np.ndarray,
+        grids: PlaneGrids | None = None,
+    ):
+        self.scene, self.lower, self.upper = scene, lower, upper
+        self._times = times
+        self.grids = grids or PlaneGrids(scene, np.array([[lower, upper]]), times)
+        _require_resolved(scene, self.grids.ends, min(-lower, upper))
+
+    @property
+    def settings(self) -> ContourSettings:
+        """How accurate the problem is."""
+        return tuning.PLANE
+
+    def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
+        """Return F on the coarsest grid; see `LaplaceProblem`."""
+        return self.transform((0, 0, 0), self._times, 0.0)
+
+    def transform(
+        self, resolution: tuple, times: np.ndarray, rarity: float
+    ) -> Callable[[complex], complex]:
+        """Return F on a grid of some resolution; see `LaplaceProblem`."""
+        resolution = tuple(resolution)
+        self.grids.ordinates(*resolution)  # that there are none is known before any z
+        return lambda z: self.grids.transform(resolution, z)[self.lower, self.upper]
+
+    def mean_duration(self) -> float:
+        """Mean of the lesser of the first passage time and of an exponential one, for first steps.
+
+        The latter has the mean of a relaxation time.
+        """
+        z = self.scene.damping
+        mean = (1 - self.coarse_transform(z, 0.0)(z)).real / z
+        return max(mean, tuning.SLABS.shortest / z)
+
+    def largest_probability(self, time: float) -> float:
+        """Chernoff's bound of the probability, from a few small exponents."""
+        settings, transform = tuning.SLABS, self.coarse_transform(0.0, 0.0)
+        return min(
+            math.exp(s) * (abs(transform(s / time)) + settings.coarse) for s in settings.exponents
+        )
 
 
 def _require_resolved(scene, ends, distance):

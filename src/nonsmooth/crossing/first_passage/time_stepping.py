@@ -42,7 +42,7 @@ def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.nd
         grows.
     """
     settings, damping, last = tuning.TIME_STEPPING, problem.scene.damping, times[-1]
-    duration, way = problem.mean_duration(), problem.way
+    duration, way = problem.mean_duration(), problem.grids.way
     spread = way * damping * min(last, math.sqrt(settings.slow * last / damping))
     if problem.largest_probability(last) < tuning.PLANE.least_probability:
         nothing = np.array([0.0 * times, 1.0 + 0.0 * times])
@@ -104,9 +104,9 @@ def _towards(wall, finest, widest, reach, other):
 def _steps(problem, driven, other, interval, step):
     """Choose the scheme for the state."""
     if ordinates_gibbs.applies(problem.scene):
-        grid = problem.grid(driven, other, tuning.STEPPED_GRIDS)
+        grid = problem.grids.grid(driven, other, tuning.STEPPED_GRIDS)
         return CoefficientSteps(grid, interval, step)
-    return TensorSteps(problem.tensor_grid(driven, other), interval, step)
+    return TensorSteps(problem.grids.tensor_grid(driven, other), interval, step)
 
 
 def _survival(steps, longest, last):

@@ -182,6 +182,7 @@ class Slabs:
     exponents: tuple[float, ...] = (0.5, 1.0, 2.0)  # chosen: z t at which W is bounded ...
     coarse: float = 1e-6  # chosen: ... with F on a coarse grid, whose error is far below this
     widest: float = 4.0  # chosen: largest distance of these z in decades, for the first basis
+    similar: float = 8.0  # chosen: longest over shortest of the intervals that share a basis
 
 
 class Basis(NamedTuple):
