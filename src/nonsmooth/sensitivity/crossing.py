@@ -47,8 +47,8 @@ def crossing_sensitivity(
     method : {"deterministic", "monte_carlo"}, optional
         ``"deterministic"`` takes differences of high order of solved probabilities. It is chosen
         for one state variable; two, where `crossing_probability` solves them, take six solutions,
-        minutes. ``"monte_carlo"`` is chosen for all others and if `tol` is so loose that it is
-        faster; it takes differences of paths that share their noise.
+        minutes, which thresholds share. ``"monte_carlo"`` is chosen for all others and if `tol` is
+        so loose that it is faster; it takes differences of paths that share their noise.
     tol : float, optional
         Error wanted of the derivative times the parameter (for a pair of levels, times the distance
         of the nearer one). Unless given, 1e-4 for ``"deterministic"`` or 1e-2 with two variables,
