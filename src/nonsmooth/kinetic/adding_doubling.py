@@ -88,9 +88,7 @@ def slabs(grid: PlaneOrdinates, z: complex, thickness: float) -> Iterator[Slab]:
         made = made.doubled()
 
 
-def fields(
-    grid: PlaneOrdinates, z: complex, thickness: float, thin: float, halvings: int = 0
-) -> np.ndarray:
+def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> np.ndarray:
     """Solve the kinetic equation in a slab, with h = 1 where the flow leaves.
 
     Parameters
@@ -102,8 +100,6 @@ def fields(
         Infinite for a half space.
     thin : float
         Thickness, at most, of the first slab, from which the others are made.
-    halvings : int
-        How often a slab of finite thickness is halved; it is solved in each half, too.
 
     Returns
     -------
@@ -115,6 +111,31 @@ def fields(
     ------
     UnstableError
         If h, which is between 0 and 1, is much larger.
+    """
+    return fields_in_halves(grid, z, thickness, thin, 0)[0]
+
+
+def fields_in_halves(
+    grid: PlaneOrdinates, z: complex, thickness: float, thin: float, halvings: int
+) -> list[np.ndarray]:
+    """Solve in a slab, in its half, and so on: their slabs are made on the way.
+
+    Parameters
+    ----------
+    grid, z, thickness, thin
+        As for `fields`.
+    halvings : int
+        How often a slab of finite thickness is halved.
+
+    Returns
+    -------
+    list of numpy.ndarray
+        As of `fields`, for each thickness.
+
+    Raises
+    ------
+    UnstableError
+        As in `fields`.
     """
     settings, ones = tuning.ADDING_DOUBLING, grid.ones[: len(grid.speeds)]
     made: list[Slab] = []
@@ -129,17 +150,16 @@ def fields(
         if len(made) > settings.fewest and np.max(np.abs(slab.transmission)) < settings.opaque:
             break
     # what is thicker than the last, opaque one is as good as it
-    smallest = min(len(made), 1 + doublings - halvings) if doublings else len(made)
-    found = [
-        field
-        for count in range(len(made), smallest - 1, -1)
-        for field in _fields(made[:count], ones)
+    counts = [
+        min(len(made), 1 + doublings - k) if doublings else len(made) for k in range(halvings + 1)
     ]
-    flow = np.sqrt(grid.masses * np.abs(grid.speeds))
-    size = np.max(np.linalg.norm(flow * found, axis=1)) / np.linalg.norm(flow * ones)
+    solved = {count: np.array(_fields(made[:count], ones)).T for count in counts}
+    flow = np.sqrt(grid.masses * np.abs(grid.speeds))[:, None]
+    size = max(np.linalg.norm(flow * h, axis=0).max() for h in solved.values())
+    size /= np.linalg.norm(flow[:, 0] * ones)
     if not size < settings.unstable:
         raise UnstableError(f"the slabs of {len(ones)} ordinates amplify by {size:.2g}")
-    return np.array(found).T
+    return [solved[count] for count in counts]
 
 
 def _fields(made, ones):

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 import nonsmooth as ns
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.adding_doubling import fields, slabs
+from nonsmooth.kinetic.adding_doubling import fields_in_halves, slabs
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
 from nonsmooth.kinetic.reduced_ordinates import reduced
@@ -21,10 +21,12 @@ from support import coarse_ordinates
 SCENES = {"friction": COLORED_FRICTION, "plastic": PLASTIC_STRAIN, "obstacle": OBSTACLE}
 
 
-def basis(grid, thickness, accuracy=1e-8, thin=0.005, halvings=0):
+def basis(grid, thickness, accuracy=1e-8, thin=0.005, halves=slice(1)):
     """Few ordinates for rates between a thousandth of and ten times that of relaxation."""
     found = [
-        fields(grid, z, thickness, thin * grid.way, halvings) for z in 10.0 ** np.arange(-3, 1.1)
+        field
+        for z in 10.0 ** np.arange(-3, 1.1)
+        for field in fields_in_halves(grid, z, thickness, thin * grid.way, 3)[halves]
     ]
     return reduced(grid, np.hstack(found), accuracy)
 
@@ -73,11 +75,12 @@ class TestReducedOrdinates:
             assert abs(found - exact) <= 3 * abs(found - change) + 1e-7
             assert abs(found - exact) < 1e-5
 
-    def test_one_basis_serves_shorter_intervals(self, line):
-        """Solutions in the longest one and in its halves; errors as for an interval alone."""
-        intervals = np.array([[-2.0, 2.0], [-1.5, 1.2], [-0.4, 0.9], [-0.25, 0.25]])
-        grid = of_one_variable(line)
-        fine, coarse = (basis(grid, 4.0, accuracy, halvings=3) for accuracy in (1e-8, 1e-7))
+    @pytest.mark.parametrize("first", [0, 1, 2])
+    def test_halves_of_a_longer_interval_make_a_basis(self, line, first):
+        """Of one that is longer and one that is shorter; errors as for an interval alone."""
+        shares = np.array([[-1.0, 1.0], [-0.8, 0.7], [-0.5, 0.9], [-0.5, 0.5]])
+        grid, intervals, halves = of_one_variable(line), shares / 2**first, slice(first, first + 2)
+        fine, coarse = (basis(grid, 2.0, accuracy, halves=halves) for accuracy in (1e-8, 1e-7))
         for z in (0.02, 0.5, 0.3 + 2.0j):
             exact = [case_modes.modes(line, z).first_passage(*levels) for levels in intervals]
             found, change = (made.first_passage(z, intervals) for made in (fine, coarse))

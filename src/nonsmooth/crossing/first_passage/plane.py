@@ -13,7 +13,7 @@ from nonsmooth.crossing.first_passage.problem import (
 )
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic import ordinates_gibbs
-from nonsmooth.kinetic.adding_doubling import fields
+from nonsmooth.kinetic.adding_doubling import fields_in_halves
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
@@ -36,8 +36,9 @@ class PlaneGrids:
     """Grids and bases of one scene that serve the same times, for one interval or several.
 
     A resolution is a triple: of the grid in the driven variable, in the other one, and of the basis
-    in which the grid is reduced. One grid serves all times. The basis is taken from solutions in
-    the longest interval, and in halves of it if there are shorter ones.
+    in which the grid is reduced. One grid serves all times. A basis is taken from solutions in the
+    longest interval, or in halves of it, one of which is longer than the interval that it is for,
+    and one shorter, unless one has its length.
 
     Parameters
     ----------
@@ -55,13 +56,19 @@ class PlaneGrids:
 
     def __init__(self, scene: Scene, intervals: np.ndarray, times: np.ndarray):
         self.scene, self.ends = scene, boxed(scene)
-        self._intervals, self._times = intervals, times
-        lengths = intervals[:, 1] - intervals[:, 0]
-        self._length, self._halvings = lengths.max(), 0
+        self._times, lengths = times, intervals[:, 1] - intervals[:, 0]
+        self._length = lengths.max()
+        shorter = np.zeros(len(intervals))
         if math.isfinite(self._length):
-            self._halvings = math.ceil(math.log2(self._length / lengths.min()))
+            shorter = np.log2(self._length / lengths)
+        self._halvings = int(np.ceil(shorter).max())
+        # from pairs of levels to the halves of which one is longer and one is shorter
+        self._halves = {
+            (float(lower), float(upper)): (math.floor(k), math.ceil(k))
+            for (lower, upper), k in zip(intervals, shorter, strict=True)
+        }
         self._grids: dict[tuple, PlaneOrdinates] = {}
-        self._known: dict[tuple, np.ndarray] = {}
+        self._known: dict[tuple, list[np.ndarray]] = {}
         self._reduced: dict[tuple, ReducedOrdinates] = {}
         self._transforms: dict[tuple, dict] = {}
 
@@ -109,27 +116,34 @@ class PlaneGrids:
         """The shortest time of interest."""
         return min(self._times[0], 1 / self.scene.damping)
 
-    def transform(self, resolution: tuple[int, int, int], z: complex) -> dict:
-        """Compute F at a place, for all intervals: most of the time they have in common.
+    def transform(
+        self, resolution: tuple[int, int, int], interval: tuple[float, float]
+    ) -> Callable[[complex], complex]:
+        """Return F of an interval. Its values are computed for all that have its basis.
 
         Parameters
         ----------
         resolution : tuple
             Of the grid in both variables, and of the basis.
-        z : complex
-
-        Returns
-        -------
-        dict
-            From pairs of levels.
+        interval : tuple
+            Lower and upper level.
         """
-        key = resolution, z
-        if key not in self._transforms:
-            found = self.ordinates(*resolution).first_passage(z, self._intervals)
-            self._transforms[key] = dict(zip(map(tuple, self._intervals), found, strict=True))
-        return self._transforms[key]
+        halves = self._halves[interval]
+        ordinates = self.ordinates(*resolution, halves)
+        alike = [other for other, between in self._halves.items() if between == halves]
+        values = self._transforms.setdefault((*resolution, halves), {})
 
-    def ordinates(self, driven: int, other: int, basis: int) -> ReducedOrdinates:
+        def transform(z):
+            if z not in values:
+                found = ordinates.first_passage(z, np.array(alike))
+                values[z] = dict(zip(alike, found, strict=True))
+            return values[z][interval]
+
+        return transform
+
+    def ordinates(
+        self, driven: int, other: int, basis: int, halves: tuple[int, int] = (0, 0)
+    ) -> ReducedOrdinates:
         """Reduce a grid.
 
         Parameters
@@ -138,27 +152,33 @@ class PlaneGrids:
             As for `grid`.
         basis : int
             Resolution of the basis.
+        halves : tuple of int
+            How often the longest interval is halved for its solutions, at first and at last.
         """
-        key = driven, other, basis
+        key = driven, other, basis, halves
         if key not in self._reduced:
-            found = list(self._fields(*key).values())
+            found = [
+                h
+                for of_z in self._fields(driven, other, basis)
+                for h in of_z[halves[0] : halves[1] + 1]
+            ]
             accuracy = tuning.BASES[basis].accuracy
             self._reduced[key] = reduced(self.grid(driven, other), np.hstack(found), accuracy)
         return self._reduced[key]
 
     def _fields(self, driven, other, basis):
-        """Solutions in the slab for the z of a basis."""
+        """Solutions in the slab and in its halves for the z of a basis."""
         thin = tuning.BASES[basis].thin
-        return {z: self._field(driven, other, z, thin) for z in self._shifts(basis)}
+        return [self._field(driven, other, z, thin) for z in self._shifts(basis)]
 
     def _field(self, driven, other, z, thin):
-        """Solutions in the slab for a real z."""
+        """Solutions in the slab and in its halves for a real z."""
         key = driven, other, z, thin
         if key not in self._known:
             grid = self.grid(driven, other)
             # what int g goes within a relaxation time, or within 1/z if this is shorter
             way = grid.way / (1 + z / self.scene.damping)
-            self._known[key] = fields(grid, z, self._length, thin * way, self._halvings)
+            self._known[key] = fields_in_halves(grid, z, self._length, thin * way, self._halvings)
         return self._known[key]
 
     def _shifts(self, refined):
@@ -217,9 +237,7 @@ class PlaneProblem(LaplaceProblem):
         self, resolution: tuple, times: np.ndarray, rarity: float
     ) -> Callable[[complex], complex]:
         """Return F on a grid of some resolution; see `LaplaceProblem`."""
-        resolution = tuple(resolution)
-        self.grids.ordinates(*resolution)  # that there are none is known before any z
-        return lambda z: self.grids.transform(resolution, z)[self.lower, self.upper]
+        return self.grids.transform(resolution, (float(self.lower), float(self.upper)))
 
     def mean_duration(self) -> float:
         """Mean of the lesser of the first passage time and of an exponential one, for first steps.
