@@ -85,9 +85,10 @@ def serve(requests: socket.socket) -> dict:
                 if job == 0:
                     signal.signal(signal.SIGINT, signal.default_int_handler)
                     return json.loads(request)
-                answers.sendall(b"%d\n" % job)
-                answers.recv(1)
-                answers.sendall(b"%d\n" % os.waitpid(job, 0)[1])
+                with contextlib.suppress(OSError):  # snakemake has been killed
+                    answers.sendall(b"%d\n" % job)
+                    answers.recv(1)
+                    answers.sendall(b"%d\n" % os.waitpid(job, 0)[1])
                 os._exit(0)
 
 

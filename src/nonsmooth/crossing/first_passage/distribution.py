@@ -13,7 +13,7 @@ from nonsmooth.crossing.first_passage import plane, tuning
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver, contour_solvers
 from nonsmooth.crossing.first_passage.line import Intervals, LineProblemFromAfar
-from nonsmooth.crossing.first_passage.plane import PlaneGrids, PlaneProblem, inverted
+from nonsmooth.crossing.first_passage.plane import PlaneProblem, SharedGrids, inverted
 from nonsmooth.crossing.first_passage.problem import (
     DirectProblem,
     FirstPassageProblem,
@@ -120,14 +120,14 @@ def _in_plane(scene, intervals, times, tol):
     """Return what solves each interval, for two state variables."""
     solvers, lengths = {}, intervals[:, 1] - intervals[:, 0]
     for group in _of_similar_size(lengths, tuning.SLABS.similar):
-        grids = cache(partial(_plane_grids, scene, intervals[group]))
+        grids = cache(partial(_shared_grids, scene, intervals[group]))
         for k in group:
             solvers[k] = partial(_one_in_plane, scene, *intervals[k], times, tol, grids)
     return [solvers[k] for k in range(len(intervals))]
 
 
-def _plane_grids(scene, intervals, times):
-    return PlaneGrids(scene, intervals, np.array(times))
+def _shared_grids(scene, intervals, times):
+    return SharedGrids(scene, intervals, np.array(times))
 
 
 def _one_in_plane(scene, lower, upper, times, tol, grids):

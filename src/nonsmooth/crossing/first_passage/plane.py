@@ -32,7 +32,7 @@ def applies(scene: Scene) -> bool:
     )
 
 
-class PlaneGrids:
+class SharedGrids:
     """Grids and bases of one scene that serve the same times, for one interval or several.
 
     A resolution is a triple: of the grid in the driven variable, in the other one, and of the basis
@@ -81,7 +81,7 @@ class PlaneGrids:
         ----------
         driven, other : int
             Resolution of the variable that noise drives, and of the other.
-        levels : tuning.PlaneGrids
+        levels : PlaneGrids
             What a resolution means.
         """
         key = driven, other, levels
@@ -194,7 +194,7 @@ class PlaneGrids:
 class PlaneProblem(LaplaceProblem):
     """A scene with two state variables to which this module `applies`, and an interval.
 
-    Resolutions are those of `PlaneGrids`.
+    Resolutions are those of `SharedGrids`.
 
     Parameters
     ----------
@@ -203,12 +203,12 @@ class PlaneProblem(LaplaceProblem):
         lower < 0 < upper, one of them possibly infinite.
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
-    grids : PlaneGrids, optional
+    grids : SharedGrids, optional
         For the same times, if other intervals have them in common with this one.
 
     Attributes
     ----------
-    grids : PlaneGrids
+    grids : SharedGrids
     """
 
     def __init__(
@@ -217,11 +217,11 @@ class PlaneProblem(LaplaceProblem):
         lower: float,
         upper: float,
         times: np.ndarray,
-        grids: PlaneGrids | None = None,
+        grids: SharedGrids | None = None,
     ):
         self.scene, self.lower, self.upper = scene, lower, upper
         self._times = times
-        self.grids = grids or PlaneGrids(scene, np.array([[lower, upper]]), times)
+        self.grids = grids or SharedGrids(scene, np.array([[lower, upper]]), times)
         _require_resolved(scene, self.grids.ends, min(-lower, upper))
 
     @property
