@@ -88,7 +88,9 @@ def slabs(grid: PlaneOrdinates, z: complex, thickness: float) -> Iterator[Slab]:
         made = made.doubled()
 
 
-def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> np.ndarray:
+def fields(
+    grid: PlaneOrdinates, z: complex, thickness: float, thin: float, halvings: int = 0
+) -> list[np.ndarray]:
     """Solve the kinetic equation in a slab, with h = 1 where the flow leaves.
 
     Parameters
@@ -100,42 +102,20 @@ def fields(grid: PlaneOrdinates, z: complex, thickness: float, thin: float) -> n
         Infinite for a half space.
     thin : float
         Thickness, at most, of the first slab, from which the others are made.
+    halvings : int
+        How often a slab of finite thickness is halved. The halves are solved, too: their slabs are
+        made on the way.
 
     Returns
     -------
-    numpy.ndarray, shape (k, m)
-        h at many depths, on the nodes with g > 0 or their mirror images; depths crowd at the faces.
-        Once a slab is opaque, it stands for thicker ones.
+    list of numpy.ndarray, shape (k, m)
+        For each thickness, h at many depths, on the nodes with g > 0 or their mirror images; depths
+        crowd at the faces. Once a slab is opaque, it stands for thicker ones.
 
     Raises
     ------
     UnstableError
         If h, which is between 0 and 1, is much larger.
-    """
-    return fields_in_halves(grid, z, thickness, thin, 0)[0]
-
-
-def fields_in_halves(
-    grid: PlaneOrdinates, z: complex, thickness: float, thin: float, halvings: int
-) -> list[np.ndarray]:
-    """Solve in a slab, in its half, and so on: their slabs are made on the way.
-
-    Parameters
-    ----------
-    grid, z, thickness, thin
-        As for `fields`.
-    halvings : int
-        How often a slab of finite thickness is halved.
-
-    Returns
-    -------
-    list of numpy.ndarray
-        As of `fields`, for each thickness.
-
-    Raises
-    ------
-    UnstableError
-        As in `fields`.
     """
     settings, ones = tuning.ADDING_DOUBLING, grid.ones[: len(grid.speeds)]
     made: list[Slab] = []

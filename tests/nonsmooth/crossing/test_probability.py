@@ -8,7 +8,7 @@ import nonsmooth as ns
 from nonsmooth.crossing.first_passage import line, plane
 from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.adding_doubling import fields_in_halves
+from nonsmooth.kinetic.adding_doubling import fields
 from references import COLORED_FRICTION, FRICTION, GAMMA2, OBSTACLE, SKEWED, W_STAR
 
 HORIZONS = np.linspace(0, 2, 11)[1:]
@@ -244,9 +244,9 @@ def test_thresholds_of_two_variables_share_slabs(monkeypatch):
 
     def counted(grid, *arguments):
         made.append(len(grid.speeds) ** 3)
-        return fields_in_halves(grid, *arguments)
+        return fields(grid, *arguments)
 
-    monkeypatch.setattr(plane, "fields_in_halves", counted)
+    monkeypatch.setattr(plane, "fields", counted)
     thresholds, work = [0.1, 0.2, 0.3], []
     for asked in (thresholds, *thresholds):
         made.clear()

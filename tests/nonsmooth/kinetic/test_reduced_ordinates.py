@@ -10,7 +10,7 @@ import scipy.sparse as sp
 import nonsmooth as ns
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.adding_doubling import fields_in_halves, slabs
+from nonsmooth.kinetic.adding_doubling import fields, slabs
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
 from nonsmooth.kinetic.reduced_ordinates import reduced
@@ -26,7 +26,7 @@ def basis(grid, thickness, accuracy=1e-8, thin=0.005, halves=slice(1)):
     found = [
         field
         for z in 10.0 ** np.arange(-3, 1.1)
-        for field in fields_in_halves(grid, z, thickness, thin * grid.way, 3)[halves]
+        for field in fields(grid, z, thickness, thin * grid.way, 3)[halves]
     ]
     return reduced(grid, np.hstack(found), accuracy)
 

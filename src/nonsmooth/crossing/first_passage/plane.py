@@ -13,7 +13,7 @@ from nonsmooth.crossing.first_passage.problem import (
 )
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic import ordinates_gibbs
-from nonsmooth.kinetic.adding_doubling import fields_in_halves
+from nonsmooth.kinetic.adding_doubling import fields
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
@@ -178,7 +178,7 @@ class SharedGrids:
             grid = self.grid(driven, other)
             # what int g goes within a relaxation time, or within 1/z if this is shorter
             way = grid.way / (1 + z / self.scene.damping)
-            self._known[key] = fields_in_halves(grid, z, self._length, thin * way, self._halvings)
+            self._known[key] = fields(grid, z, self._length, thin * way, self._halvings)
         return self._known[key]
 
     def _shifts(self, refined):

@@ -8,7 +8,7 @@ from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.errors import ToleranceError
-from nonsmooth.kinetic.adding_doubling import fields_in_halves
+from nonsmooth.kinetic.adding_doubling import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC
 
 
@@ -74,14 +74,14 @@ class TestCrossing:
 
         def counted(grid, *arguments):
             work.append(len(grid.speeds) ** 3)
-            return fields_in_halves(grid, *arguments)
+            return fields(grid, *arguments)
 
         def asked(times, tol):
             work.clear()
             deterministic_crossing(OBSTACLE, np.array([[-6.0, 6.0]]), times, tol)
             return sum(work)
 
-        monkeypatch.setattr(plane, "fields_in_halves", counted)
+        monkeypatch.setattr(plane, "fields", counted)
         times, rng = 100 * np.geomspace(0.1, 20, 40), np.random.default_rng(5)
         whole = asked(times, 3e-4)
         for _ in range(4):
