@@ -4,6 +4,7 @@ A is discretised by spectral elements in L^2(m) with Gauss-Lobatto quadrature, s
 matrix and multiplication by g are diagonal. `mesh_line` says where the elements end.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,8 @@ class Ordinates:
 
     Attributes
     ----------
+    axis : Axis
+        Elements, of the whole grid.
     mirrored : bool
         Whether the grid is the half y >= 0, functions being even or odd.
     nodes, g, masses : numpy.ndarray, shape (k,)
@@ -34,6 +37,7 @@ class Ordinates:
         Row vectors that interpolate functions of each parity at the start.
     """
 
+    axis: Axis
     mirrored: bool
     nodes: np.ndarray
     g: np.ndarray
@@ -112,7 +116,7 @@ def ordinates(
     grading: float | None = None,
     distances: tuple[float, float] = (np.inf, np.inf),
 ) -> Ordinates:
-    """Discretise a scene with the state y.
+    """Discretise a scene with the state y; on half of the grid if drift and g are odd.
 
     Parameters
     ----------
@@ -142,6 +146,30 @@ def ordinates(
     ToleranceError
         If it starts too far in the tails.
     """
+    grid = whole_ordinates(scene, degree, time, reach, deepest, grading, distances)
+    return _halved(grid) if scene.is_odd() else grid
+
+
+def whole_ordinates(
+    scene: Scene,
+    degree: int,
+    time: float | None = None,
+    reach: float = np.inf,
+    deepest: float | None = None,
+    grading: float | None = None,
+    distances: tuple[float, float] = (np.inf, np.inf),
+) -> Ordinates:
+    """Discretise a scene with the state y, on the whole grid also if drift and g are odd.
+
+    Parameters
+    ----------
+    scene, degree, time, reach, deepest, grading, distances
+        As for `ordinates`.
+
+    Returns
+    -------
+    Ordinates
+    """
     settings = tuning.LINE_ORDINATES
     time = settings.long_time / scene.damping if time is None else time
     deepest = settings.depth if deepest is None else deepest
@@ -155,23 +183,92 @@ def ordinates(
     stiffness = _stiffness(axis, degree, density) * scene.noise.sigma**2 / 2 / total
     masses = masses / total
     row = axis.interpolation(scene.start.get("y", 0.0)).toarray()[0]
-    if not scene.is_odd():
-        return Ordinates(False, axis.nodes, g, masses, {EVEN: stiffness}, {EVEN: row})
-    return _halved(axis.nodes, g, masses, stiffness, row)
+    return Ordinates(axis, False, axis.nodes, g, masses, {EVEN: stiffness}, {EVEN: row})
 
 
-def _halved(y, g, masses, stiffness, row):
+def _halved(grid):
     """Restrict a symmetric grid to y >= 0, for odd and for even functions."""
-    half = len(y) // 2  # the node y = 0
+    half = len(grid.nodes) // 2  # the node y = 0
     upper, lower = slice(half, None), slice(half, None, -1)
-    own = np.where(np.arange(len(y) - half) == 0, 0.5, 1.0)  # the node 0 is its own mirror image
+    own = np.where(grid.nodes[upper] == grid.nodes[half], 0.5, 1.0)  # it is its own mirror image
+    stiffness, row = grid.stiffness[EVEN], grid.start[EVEN]
     halves, start = {}, {}
     for parity in (ODD, EVEN):
         folded = stiffness[upper, upper] + parity * stiffness[upper, lower]
         halves[parity] = 2 * folded * np.outer(own, own)
         halves[parity][0, 0] = 2 * stiffness[half, half] * 0.5
         start[parity] = (row[upper] + parity * row[lower]) * own
-    return Ordinates(True, y[upper], g[upper], 2 * own * masses[upper], halves, start)
+    masses = 2 * own * grid.masses[upper]
+    return Ordinates(grid.axis, True, grid.nodes[upper], grid.g[upper], masses, halves, start)
+
+
+@dataclass(frozen=True)
+class Change:
+    """Derivatives of a scene's functions with respect to a parameter.
+
+    Attributes
+    ----------
+    depth, observable : callable
+        Of Phi = -log m up to a constant, and of g, functions of arrays of velocities.
+    diffusion : float
+        Of log(sigma^2 / 2).
+    """
+
+    depth: Callable[[np.ndarray], np.ndarray]
+    observable: Callable[[np.ndarray], np.ndarray]
+    diffusion: float
+
+
+@dataclass(frozen=True)
+class ChangeOfOrdinates:
+    """Derivatives of masses M, of masses times g, and of the stiffness, up to a common factor.
+
+    Attributes
+    ----------
+    masses, flow : numpy.ndarray, shape (k,)
+    stiffness : numpy.ndarray, shape (k, k)
+    """
+
+    masses: np.ndarray
+    flow: np.ndarray
+    stiffness: np.ndarray
+
+
+def changed(scene: Scene, grid: Ordinates, change: Change) -> ChangeOfOrdinates:
+    """Differentiate the discrete equations, on nodes that stay where they are.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : Ordinates
+        Of that scene, whole.
+    change : Change
+
+    Returns
+    -------
+    ChangeOfOrdinates
+    """
+    axis, degree = grid.axis, len(grid.axis.local) - 1
+    bend = -change.depth(axis.nodes) * grid.masses
+    flow = bend * grid.g + grid.masses / axis.weights * _summed_within(axis, change.observable)
+    density = (bend + change.diffusion * grid.masses) / axis.weights
+    stiffness = _stiffness(axis, degree, density) * scene.noise.sigma**2 / 2
+    return ChangeOfOrdinates(bend, flow, stiffness)
+
+
+def _summed_within(axis, function):
+    """Values at nodes times weights, each taken within the element of its weight.
+
+    At an edge the function may jump.
+    """
+    half, middle = np.diff(axis.edges) / 2, (axis.edges[1:] + axis.edges[:-1]) / 2
+    degree = len(axis.local) - 1
+    _, weights, _ = lobatto(degree)
+    inside = (1 - tuning.LINE_ORDINATES.inside) * axis.local
+    values = function(middle[:, None] + half[:, None] * inside) * half[:, None] * weights
+    total = np.zeros(len(axis.nodes))
+    np.add.at(total, np.arange(len(half))[:, None] * degree + np.arange(degree + 1), values)
+    return total
 
 
 def _stiffness(axis: Axis, degree, density):

@@ -29,6 +29,7 @@ class LineOrdinates:
     searched: int = 501  # chosen: points between which sign changes of g are looked for
     most: int = 400  # chosen: number of elements; dense matrices of more take minutes at each z
     cut: float = 0.3  # chosen: place at which an element is cut whose one end is a zero of g
+    inside: float = 1e-9  # chosen: how far within an element its ends are, where functions jump
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,15 @@ class CaseModes:
     separated: float = 30.0  # chosen: slow eigenvalue over the others from which it is split off
     powers: int = 12  # derived: steps of the power method; separated^-12 is below rounding
     directed: float = 0.1  # chosen: relative flux from which it tells the wall of a mode
+
+
+@dataclass(frozen=True)
+class Adjoint:
+    """Integrals over the solution and the adjoint solution."""
+
+    # derived: difference of two rates times the length up to which a series serves: its next term
+    # is 5e-4 of the fourth power, and where it ends the quotient of differences has 12 digits
+    near: float = 1e-3
 
 
 class PlaneLevel(NamedTuple):
@@ -153,6 +163,7 @@ class TailEquation:
 
 LINE_ORDINATES = LineOrdinates()
 CASE_MODES = CaseModes()
+ADJOINT = Adjoint()
 PLANE_ORDINATES = PlaneOrdinates()
 ADDING_DOUBLING = AddingDoubling()
 REDUCED_ORDINATES = ReducedOrdinates()

@@ -17,7 +17,7 @@ from nonsmooth.errors import answered
 from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
-from nonsmooth.sensitivity import differences, sampled, tuning
+from nonsmooth.sensitivity import differences, first_passage, sampled, tuning
 from nonsmooth.sensitivity.parameters import require_parameter_of
 from nonsmooth.sensitivity.questions import Question
 
@@ -45,10 +45,12 @@ def crossing_sensitivity(
         C_b, the penalization, the intensity of the noise, the threshold, or the scale. Of a pair of
         levels both move outwards by the same distance.
     method : {"deterministic", "monte_carlo"}, optional
-        ``"deterministic"`` takes differences of high order of solved probabilities. It is chosen
-        for one state variable; two, where `crossing_probability` solves them, take six solutions,
-        minutes, which thresholds share. ``"monte_carlo"`` is chosen for all others and if `tol` is
-        so loose that it is faster; it takes differences of paths that share their noise.
+        ``"deterministic"`` differentiates the transform of the crossing time, by its adjoint
+        equation. It is chosen for one state variable. For starts far in the tails, and for two
+        variables where `crossing_probability` solves them, it takes differences of high order of
+        solved probabilities; six solutions of two variables take minutes. ``"monte_carlo"`` is
+        chosen for all others and if `tol` is so loose that it is faster; it takes differences of
+        paths that share their noise.
     tol : float, optional
         Error wanted of the derivative times the parameter (for a pair of levels, times the distance
         of the nearer one). Unless given, 1e-4 for ``"deterministic"`` or 1e-2 with two variables,
@@ -60,9 +62,10 @@ def crossing_sensitivity(
     Returns
     -------
     xarray.Dataset
-        `derivative` and `derivative_error` over `horizon`. The error of ``"deterministic"`` is that
-        of the difference, by comparing two orders, and of the solutions. By Monte Carlo it is the
-        standard error with the biases of the difference and of the time step.
+        `derivative` and `derivative_error` over `horizon`. The error of ``"deterministic"`` is what
+        finer grids and other fits change; of differences it is what another order changes, and the
+        errors of the solutions. By Monte Carlo it is the standard error with the biases of the
+        difference and of the time step.
 
     Raises
     ------
@@ -88,7 +91,8 @@ def crossing_sensitivity(
         if method == "deterministic":
             usual = settings.solved[min(scene.dimension, len(settings.solved)) - 1]
             accuracy = usual if wanted is None else wanted
-            return differences.logarithmic_derivative(question, parameter, accuracy)
+            solved = first_passage if first_passage.applies(scene) else differences
+            return solved.logarithmic_derivative(question, parameter, accuracy)
         accuracy = settings.sampled if wanted is None else wanted
         return sampled.logarithmic_derivative(question, parameter, accuracy, seed, threads)
 

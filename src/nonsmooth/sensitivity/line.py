@@ -10,17 +10,15 @@ It is exact also on elements, where u is the largest among piecewise polynomials
 """
 
 import numpy as np
-import sympy
 
 from nonsmooth.line import spectral_elements
 from nonsmooth.line.potential import depth
 from nonsmooth.refine import Refined, until_agreement
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.penalties import n as penalization
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import y
 from nonsmooth.sensitivity import tuning
-from nonsmooth.sensitivity.parameters import derivative, value_of
+from nonsmooth.sensitivity.parameters import change_of_depth, derivative, value_of
 
 
 def elasticity(scene: Scene, parameter: str, tol: float) -> Refined:
@@ -74,8 +72,8 @@ def _gamma2_and_derivative(scene, parameter, degree):
     def mean(f):
         return np.sum(weight * f) / total
 
-    bend = _change_of_depth(scene, parameter)(at)
-    own = vectorised(_change_of_observable(scene, parameter), (y,))(at)
+    bend = change_of_depth(scene, parameter)(at)
+    own = vectorised(derivative(scene, scene.observable_expression, parameter), (y,))(at)
     spread = 4 * g * u - sigma**2 * slope**2
     change = 4 * mean(own * u) - mean((bend - mean(bend)) * spread)
     if parameter == "sigma":
@@ -92,20 +90,3 @@ def _solution(stiffness, right):
     found = np.zeros(len(stiffness))
     found[free] = scale * np.linalg.solve(matrix, scale * right[free])
     return found
-
-
-def _change_of_depth(scene, parameter):
-    """Return the derivative of Phi, a function of arrays."""
-    sigma = scene.noise.sigma
-    if parameter == "sigma":
-        phi = depth(scene)
-        return lambda at: -2 / sigma * phi(at)
-    if parameter == "damping":
-        return lambda at: (at / sigma) ** 2
-    penalty = scene.mechanics.penalty.potential(y) if scene.mechanics.is_friction else 0
-    slope = sympy.diff(penalty, penalization).subs(penalization, sympy.Float(scene.n))
-    return vectorised(2 * slope / sigma**2, (y,))
-
-
-def _change_of_observable(scene, parameter):
-    return derivative(scene, scene.observable_expression, parameter)

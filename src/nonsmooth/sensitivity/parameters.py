@@ -1,13 +1,17 @@
 """The parameters of a scene, and the derivatives of its equations with respect to them."""
 
 import math
+from collections.abc import Callable
 
+import numpy as np
 import sympy
 
 from nonsmooth.checks import require_choice
 from nonsmooth.errors import SceneError
 from nonsmooth.grids.generator import Change
+from nonsmooth.line.potential import depth
 from nonsmooth.scenes import symbols
+from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
 from nonsmooth.scenes.scene import Scene
 
@@ -58,3 +62,29 @@ def derivative(scene: Scene, expression: sympy.Expr, parameter: str) -> sympy.Ex
     slope = sympy.diff(expression, _SYMBOLS[parameter])
     numbers = {penalization: sympy.Float(scene.n), symbols.damping: sympy.Float(scene.damping)}
     return slope.subs(numbers)
+
+
+def change_of_depth(scene: Scene, parameter: str) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the derivative of Phi, see `nonsmooth.line.potential`.
+
+    Parameters
+    ----------
+    scene : Scene
+        With the state y and white noise.
+    parameter : str
+        One of `PARAMETERS`.
+
+    Returns
+    -------
+    callable
+        Of arrays of velocities.
+    """
+    sigma = scene.noise.sigma
+    if parameter == "sigma":
+        phi = depth(scene)
+        return lambda at: -2 / sigma * phi(at)
+    if parameter == "damping":
+        return lambda at: (at / sigma) ** 2
+    penalty = scene.mechanics.penalty.potential(symbols.y) if scene.mechanics.is_friction else 0
+    slope = sympy.diff(penalty, penalization).subs(penalization, sympy.Float(scene.n))
+    return vectorised(2 * slope / sigma**2, (symbols.y,))

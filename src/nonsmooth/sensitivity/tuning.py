@@ -38,6 +38,15 @@ class Crossing:
 
 
 @dataclass(frozen=True)
+class Adjoint:
+    """The differentiated transform of one variable."""
+
+    negligible: float = 1e-2  # chosen: a share of F below so much of the accuracy counts as none
+    # fitted: to differences of probabilities that are solved to 1e-11
+    rounding: float = 1e-12
+
+
+@dataclass(frozen=True)
 class Differences:
     """Central differences of solved probabilities."""
 
@@ -59,6 +68,7 @@ class CommonNoise:
 
 GAMMA2 = Gamma2()
 CROSSING = Crossing()
+ADJOINT = Adjoint()
 DIFFERENCES = Differences()
 COMMON_NOISE = CommonNoise()
 LINE = Line()

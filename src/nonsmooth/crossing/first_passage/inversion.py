@@ -260,7 +260,7 @@ class _OnVerticalLines(_Inversion):
             begun = saddles.begin(abscissa, settings.negligible * min(accuracy, 1.0))
             values = vertical_lines.inverted(
                 parts,
-                abscissa,
+                vertical_lines.line(parts, abscissa),
                 np.maximum(fronts, begun),
                 accuracy,
                 rising,

@@ -78,10 +78,18 @@ class _OfLine(LaplaceProblem):
         self, resolution: int, times: np.ndarray, rarity: float
     ) -> Callable[[complex], complex]:
         """Return F on a grid for given times; see `LaplaceProblem`."""
-        return self._on_grid(*self._fitting(resolution, times, rarity))
+        return self._on_grid(*self.fitting(resolution, times, rarity))
 
-    def _fitting(self, resolution, times, rarity):
-        """Return degree, shortest time, reach and depth of the grid for given times."""
+    def fitting(
+        self, resolution: int, times: np.ndarray, rarity: float
+    ) -> tuple[int, float, float, float]:
+        """Return degree, shortest time, reach and depth of the grid for given times.
+
+        Parameters
+        ----------
+        resolution, times, rarity
+            As for `transform`.
+        """
         reach = self._reach(times[-1], rarity)
         return resolution, times[0], reach, tuning.LINE_GRIDS.depth + rarity
 
@@ -132,7 +140,7 @@ class LineProblem(_OfLine):
 
         No path is there before g has been as large as it can be all the time.
         """
-        of_grid = self._fitting(resolution, times, rarity)
+        of_grid = self.fitting(resolution, times, rarity)
         grid = self.intervals.grid(*of_grid)
         fastest = np.array([np.max(grid.g), -np.min(grid.g)])
         if grid.mirrored:

@@ -49,8 +49,46 @@ class Exponentials:
         return total
 
 
+@dataclass(frozen=True)
+class Line:
+    """A vertical line, and what is known of F on it.
+
+    Attributes
+    ----------
+    abscissa : float
+        Re z; positive.
+    size : float
+        Of F, to which accuracies are relative.
+    lowest : float
+        Height up to which F hardly changes.
+    """
+
+    abscissa: float
+    size: float
+    lowest: float
+
+
+def line(parts: Parts, abscissa: float) -> Line:
+    """Return a line on which the transform of a probability is largest on the real axis.
+
+    Parameters
+    ----------
+    parts : callable
+        The parts of F.
+    abscissa : float
+
+    Returns
+    -------
+    Line
+    """
+    settings = tuning.VERTICAL_LINES
+    size = np.sum(parts(complex(abscissa))).real
+    # 1 - F over z is a mean duration: F changes little closer to the axis than its inverse
+    return Line(abscissa, size, settings.first / max(1 - size, settings.least))
+
+
 def inverted(
-    parts: Parts, abscissa: float, delays: np.ndarray, accuracy: float, rising: bool, offset: float
+    parts: Parts, line: Line, delays: np.ndarray, accuracy: float, rising: bool, offset: float
 ) -> Exponentials:
     """Invert F(z) / z by a rational fit on a vertical line.
 
@@ -58,12 +96,11 @@ def inverted(
     ----------
     parts : callable
         The parts of F.
-    abscissa : float
-        Of the line; positive.
+    line : Line
     delays : numpy.ndarray, shape (m,)
         Times before which the parts contribute nothing.
     accuracy : float
-        Of the fit, relative to F on the axis.
+        Of the fit, relative to the size of F.
     rising : bool
         Whether the inverse is still small, so that F / z is fitted instead of F: the pole at 0 is
         far from the line then, and its residue would cancel.
@@ -74,7 +111,7 @@ def inverted(
     -------
     Exponentials
     """
-    size = np.sum(parts(complex(abscissa))).real
+    abscissa, size = line.abscissa, line.size
     if size <= 0:  # rounding
         return Exponentials(delays, [(np.zeros(0), np.zeros(0))] * len(delays))
 
@@ -86,7 +123,7 @@ def inverted(
     with np.errstate(divide="ignore"):
         # above, the phase of exp(-z t_0) is rounded by more than the accuracy
         highest = accuracy / (tuning.VERTICAL_LINES.phase * np.max(delays))
-    sampled = _sampled(scaled, abscissa, size, accuracy, offset, highest)
+    sampled = _sampled(scaled, line, accuracy, offset, highest)
     terms, unit = [], tuning.VERTICAL_LINES.unit * abscissa
     for (z, values), delay in zip(sampled, delays, strict=True):
         poles, residues = (unit * part for part in _residues(z, values, accuracy))
@@ -101,13 +138,11 @@ def inverted(
     return Exponentials(delays, terms)
 
 
-def _sampled(scaled, abscissa, size, accuracy, offset, highest):
+def _sampled(scaled, line, accuracy, offset, highest):
     """Sample until F is negligible, and then where fits to the samples so far are wrong."""
-    settings = tuning.VERTICAL_LINES
-    # 1 - F over z is a mean duration: F changes little closer to the axis than its inverse
-    lowest = settings.first / max(1 - size, settings.least)
+    settings, abscissa = tuning.VERTICAL_LINES, line.abscissa
     # heights are on a lattice that transforms of different thresholds share
-    place = np.floor(np.log(lowest) / np.log(settings.step)) + offset
+    place = np.floor(np.log(line.lowest) / np.log(settings.step)) + offset
     samples, rest = {0.0: scaled(0.0)}, settings.beyond
     while rest and (height := abscissa * settings.step**place) < highest:
         samples[height] = scaled(height)

@@ -1,0 +1,158 @@
+"""Derivatives of crossing probabilities with one state variable, by the adjoint kinetic equation.
+
+The Laplace transform of the crossing time is differentiated at each place z (`kinetic.adjoint`) and
+inverted like the transform itself: one solution, where a difference takes several. The derivative
+is small where the probability is, so that one vertical line serves all times.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from nonsmooth.crossing.first_passage import tuning as of_first_passage
+from nonsmooth.crossing.first_passage import vertical_lines
+from nonsmooth.crossing.first_passage.line import Intervals, LineProblem
+from nonsmooth.crossing.first_passage.saddle_points import saddle_points
+from nonsmooth.errors import ToleranceError
+from nonsmooth.kinetic.adjoint import Adjoint
+from nonsmooth.kinetic.ordinates_line import Change, changed, whole_ordinates
+from nonsmooth.line.potential import depth
+from nonsmooth.refine import until_agreement
+from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import y
+from nonsmooth.sensitivity import tuning
+from nonsmooth.sensitivity.parameters import PARAMETERS, change_of_depth, derivative
+from nonsmooth.sensitivity.questions import Question
+
+Parts = Callable[[complex], np.ndarray]
+
+
+def applies(scene: Scene) -> bool:
+    """Whether the scene has the state y with white noise, and starts not far in the tails."""
+    if not scene.is_line:
+        return False
+    start = scene.start.get("y", 0.0)
+    return bool(depth(scene)(start) <= of_first_passage.FAR_START.depth)
+
+
+def logarithmic_derivative(
+    question: Question, parameter: str, tol: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Differentiate W with respect to the logarithm of a parameter.
+
+    Parameters
+    ----------
+    question : Question
+        Of a scene to which this module `applies`.
+    parameter : str
+    tol : float
+        Absolute error wanted.
+
+    Returns
+    -------
+    value, error : numpy.ndarray, shape (k,)
+        The error is what finer grids and other places of the fit change, the largest of all times.
+
+    Raises
+    ------
+    ToleranceError
+        If `tol` is not met; the best is its `result`.
+    """
+    solver, refinement = _Solver(question, parameter, tol), of_first_passage.REFINEMENT
+    times, levels = question.times, of_first_passage.LINE.levels
+    rounding = tuning.ADJOINT.rounding * (1 + question.scene.damping * times[-1])
+
+    def error(found):
+        change = np.max(np.abs(found[-1] - found[-2]))
+        return refinement.safety * change + refinement.by_chance * tol + rounding
+
+    found = until_agreement(
+        [level.resolution for level in levels], solver.solve, error, lambda _, error: error <= tol
+    )
+    answer = found.value, np.full(len(times), found.error)
+    if found.met:
+        return answer
+    raise ToleranceError(
+        f"the derivative by {parameter} has an error of {found.error:.1e} times the parameter, "
+        f"above tol = {tol:g}; loosen tol",
+        answer,
+    )
+
+
+class _Solver:
+    """The derivative on grids of some degree, all on one vertical line."""
+
+    def __init__(self, question: Question, parameter: str, tol: float):
+        self.question, self.parameter = question, parameter
+        (self.problem,) = Intervals(question.scene, [question.levels]).problems
+        lines = of_first_passage.VERTICAL_LINES
+        self.accuracy = max(lines.best, lines.accuracy * tol)
+        self.abscissa = 1 / question.times[-1]
+        share = tuning.ADJOINT.negligible * self.accuracy
+        self.begun = saddle_points(self.problem, question.times).begin(self.abscissa, share)
+        self._offset = 0.0
+
+    def solve(self, degree: int) -> np.ndarray:
+        """Solve on a grid, with other places on the line than before."""
+        question, times = self.question, self.question.times
+        probability, fronts = self.problem.parts(degree, times, 0.0)
+        line = vertical_lines.line(probability, self.abscissa)
+        self._offset = 0.5 - self._offset
+
+        def inverted(parts):
+            if times[-1] <= fronts.min():
+                return np.zeros(len(times))
+            return vertical_lines.inverted(
+                parts,
+                vertical_lines.Line(self.abscissa, 1.0, line.lowest),
+                np.maximum(fronts, self.begun),
+                self.accuracy,
+                rising=False,
+                offset=self._offset,
+            ).at(times)
+
+        value = inverted(_differentiated(question, self.parameter, self.problem, degree))
+        if self.parameter != "p":
+            return value
+        # p is a factor of the times, too: t times the density of the crossing time, of which the
+        # transform is F itself
+        density = inverted(lambda z: z / self.abscissa * probability(z))
+        return value + times * self.abscissa * density
+
+
+def _differentiated(question: Question, parameter: str, problem: LineProblem, degree: int) -> Parts:
+    """Parts of the transform's derivative by the logarithm of a parameter."""
+    scene, (lower, upper) = question.scene, question.levels
+    of_grid = problem.fitting(degree, question.times, 0.0)
+    grid = whole_ordinates(scene, *of_grid, distances=(-lower, upper))
+    value = question.value(parameter)
+    if parameter in PARAMETERS:
+        change = changed(scene, grid, _change(scene, parameter))
+
+        def of(adjoint):
+            return value * adjoint.by_parameter(change)
+
+    elif parameter == "threshold":  # both levels move outwards by the same distance
+        ways = np.full(2, value * np.sqrt(question.p))
+
+        def of(adjoint):
+            return ways @ adjoint.by_levels()
+
+    else:  # the levels have the factor sqrt(p)
+        ways = np.nan_to_num([upper / 2, -lower / 2], posinf=0.0)
+
+        def of(adjoint):
+            return ways @ adjoint.by_levels()
+
+    def parts(z):
+        found = of(Adjoint(grid, z, lower, upper))
+        return found if problem.is_split else np.array([found.sum()])
+
+    return parts
+
+
+def _change(scene, parameter):
+    observable = vectorised(derivative(scene, scene.observable_expression, parameter), (y,))
+    diffusion = 2 / scene.noise.sigma if parameter == "sigma" else 0.0
+    return Change(change_of_depth(scene, parameter), observable, diffusion)
