@@ -123,7 +123,7 @@ class Adjoint:
         return g > 0, g < 0
 
     def _falls(self, above, below):
-        """What is left of the modes of both walls at these distances, 0 at infinite ones."""
+        """Parts of the modes of both walls that are left at these distances, 0 at infinite ones."""
         pairs = (self._above.rates, above), (self._below.rates, below)
         return [np.exp(-r * d) if np.isfinite(d) else np.zeros(len(r)) for r, d in pairs]
 

@@ -89,7 +89,7 @@ def test_changes_of_the_nodes():
     found = changed(scene, grid, Change(lambda y: (y / scene.noise.sigma) ** 2, np.zeros_like, 0.0))
 
     def ratios(damping):
-        """What does not depend on the elements' ends, which follow the density."""
+        """Masses with another damping, up to a factor: elements would follow the density."""
         density = np.exp(-damping / scene.noise.sigma**2 * grid.nodes**2)
         return density * grid.masses * np.exp(scene.damping / scene.noise.sigma**2 * grid.nodes**2)
 

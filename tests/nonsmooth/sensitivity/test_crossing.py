@@ -5,6 +5,8 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
+from nonsmooth.sensitivity import differences, first_passage
+from nonsmooth.sensitivity.questions import Question
 from references import FRICTION
 
 HORIZONS = np.array([0.5, 2.0, 8.0])
@@ -31,7 +33,39 @@ def test_scaling_with_sigma(method, tol):
     assert np.all(np.abs(by_sigma["derivative"] - exact) <= times * error)
 
 
+ODD = FRICTION.with_n(3), (-0.6, 0.6)
+ONE_THRESHOLD = ns.Scene("friction", n=5, start={"y": 0.3}), (-0.5, np.inf)
+SKEW = ns.Scene("friction", observable="tanh(y) - y**2/9 + 0.1", n=5), (-0.6, 1.0)
+FORCE = ns.Scene("friction", observable="friction_force", n=5), (-0.6, 0.6)
+
+
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scene", "levels", "parameter"),
+    [
+        (*ODD, "p"),
+        (*ONE_THRESHOLD, "threshold"),
+        (*ONE_THRESHOLD, "n"),
+        (*SKEW, "threshold"),
+        (*FORCE, "n"),
+    ],
+)
+def test_adjoint_and_differences(scene, levels, parameter):
+    """The differentiated transform and differences of solutions agree within their errors."""
+    question = Question(scene, *levels, HORIZONS, 1.5)
+    exact, error = first_passage.logarithmic_derivative(question, parameter, 1e-5)
+    value, of_difference = differences.logarithmic_derivative(question, parameter, 1e-4)
+    assert np.all(np.abs(exact - value) <= error + of_difference)
+    assert np.max(np.abs(value)) > 10 * np.max(of_difference), "the comparison would see nothing"
+
+
+def test_far_starts_are_left_to_differences():
+    """The adjoint equation is for starts that are not far in the tails, of one variable."""
+    assert first_passage.applies(FRICTION)
+    assert not first_passage.applies(FRICTION.with_start({"y": 9.0}))
+    assert not first_passage.applies(ns.Scene("friction", "langevin"))
+
+
 def test_scale_of_the_limit_theorem():
     """In the limit of large p the derivative by the threshold is that of Brownian motion.
 
@@ -63,7 +97,6 @@ def test_the_scale_is_a_threshold_and_a_time():
     assert np.all(np.abs(by_p["derivative"] - expected) <= by_p["derivative_error"] + error)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("parameter", ["threshold", "p", "damping", "n", "sigma"])
 def test_loose_tolerances_hold(parameter):
     """The error that is stated to a loose tolerance contains the value of a tight one."""
