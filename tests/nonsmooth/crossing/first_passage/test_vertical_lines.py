@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 from scipy.special import erfc
 
-from nonsmooth.crossing.first_passage.vertical_lines import inverted
+from nonsmooth.crossing.first_passage.vertical_lines import inverted, line
+
+
+def fitted(parts, abscissa, *rest):
+    """Invert on the line through a place on the axis."""
+    return inverted(parts, line(parts, abscissa), *rest)
 
 
 def bound(accuracy, abscissa, highest, last):
@@ -17,7 +22,7 @@ def bound(accuracy, abscissa, highest, last):
 def test_one_fit_serves_many_times(offset):
     """exp(-sqrt z) is the transform of erfc(1/(2 sqrt t)); its error is that of the fit."""
     times, accuracy = np.geomspace(0.1, 100.0, 40), 1e-8
-    found = inverted(
+    found = fitted(
         lambda z: np.array([np.exp(-np.sqrt(z))]), 0.01, np.zeros(1), accuracy, False, offset
     ).at(times)
     # |F| is below the accuracy at sqrt(z / 2) = 18.4
@@ -28,7 +33,7 @@ def test_one_fit_serves_many_times(offset):
 def test_units_of_time_do_not_matter(scale):
     """Poles are found where all of them are huge or tiny."""
     times, accuracy = scale * np.geomspace(0.1, 100.0, 40), 1e-8
-    found = inverted(
+    found = fitted(
         lambda z: np.array([np.exp(-np.sqrt(scale * z))]),
         0.01 / scale,
         np.zeros(1),
@@ -45,7 +50,7 @@ def test_small_values_keep_relative_accuracy():
 
     The bound of the probability is 30 times as large, and the error relative to it.
     """
-    found = inverted(
+    found = fitted(
         lambda z: np.array([np.exp(-np.sqrt(z))]), 2500.0, np.zeros(1), 1e-9, True, 0.0
     ).at(np.array([0.01]))
     assert found[0] == pytest.approx(erfc(5.0), rel=30 * bound(1e-9, 1.0, 10.0, 0.0))
@@ -58,13 +63,13 @@ def test_delays_are_exact():
     def parts(z):
         return np.array([np.exp(-z * delay) / (2 + 2 * z) for delay in delays])
 
-    found = inverted(parts, 1 / 40, np.array(delays), accuracy, False, 0.0).at(times)
+    found = fitted(parts, 1 / 40, np.array(delays), accuracy, False, 0.0).at(times)
     exact = sum(np.where(times > t, 1 - np.exp(np.minimum(t - times, 0)), 0) / 2 for t in delays)
     assert np.max(np.abs(found - exact)) < 2 * bound(accuracy, 1 / 40, 1e8, 40.0)
 
 
 def test_what_is_negligible_is_0():
     """A transform below the accuracy is 0."""
-    found = inverted(lambda z: np.array([1.0 / (1 + z), 1e-12]), 0.1, np.zeros(2), 1e-9, False, 0.0)
+    found = fitted(lambda z: np.array([1.0 / (1 + z), 1e-12]), 0.1, np.zeros(2), 1e-9, False, 0.0)
     assert len(found.terms[1][0]) <= 1
     assert found.at(np.array([3.0]))[0] == pytest.approx(1 - np.exp(-3.0), abs=1e-8)
