@@ -108,9 +108,10 @@ def test_a_sweep_computes_new_scenes_alone(repository):
     ("change", "message"),
     [
         ({"titel": "x"}, "error: studies.mine: unknown key 'titel'; did you mean 'title'?"),
-        (
+        pytest.param(
             {"scenes": {"weak": {"slip_force": "5 mm"}}},
             "error: studies.mine: 'scenes.weak.slip_force': 'slip_force': '5 mm' is no quantity",
+            marks=pytest.mark.slow,
         ),
     ],
 )

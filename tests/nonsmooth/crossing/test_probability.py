@@ -200,7 +200,7 @@ def test_each_row_of_several_thresholds_is_that_threshold(thresholds, method):
 @pytest.mark.parametrize(
     ("scene", "p", "tol"),
     [
-        (FRICTION, 2.0, 1e-4),
+        pytest.param(FRICTION, 2.0, 1e-4, marks=pytest.mark.slow),
         pytest.param(SKEWED, 2.0, 1e-4, marks=pytest.mark.slow),
         pytest.param(OBSTACLE, 100.0, 1e-3, marks=pytest.mark.slow),
     ],
@@ -291,6 +291,7 @@ def test_what_misses_its_tolerance_is_told_with_all_thresholds():
     assert dict(refused.value.result.sizes) == {"threshold": 2, "horizon": 1}
 
 
+@pytest.mark.slow
 def test_no_error_of_a_probability_is_above_one():
     """Whatever a method finds, that much is known."""
     with pytest.warns(AccuracyWarning):

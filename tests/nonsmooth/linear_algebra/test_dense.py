@@ -77,7 +77,7 @@ def _then_wait(call, matrix):
 def test_ctrl_c_is_heard_within(call):
     """KeyboardInterrupt comes long before the work would be done.
 
-    The signal is sent after a tenth of a second; half a second later it must have been heard,
+    The signal is sent after a tenth of a second; 0.9 seconds later it must have been heard,
     where the work takes longer than that. Time is that of the processor.
     """
     half = RNG.standard_normal((1500, 1500))
@@ -95,7 +95,7 @@ def test_ctrl_c_is_heard_within(call):
     try:
         with pytest.raises(KeyboardInterrupt):
             _then_wait(call, matrix)
-        assert time.process_time() - sent[0] < 0.5
+        assert time.process_time() - sent[0] < 0.9
     finally:
         signal.signal(signal.SIGINT, previous)
         presser.join()

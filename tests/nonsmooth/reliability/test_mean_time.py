@@ -35,6 +35,7 @@ def test_mean_is_the_integral_of_survival(scene, threshold):
     assert found.error < 2e-6 * found.value
 
 
+@pytest.mark.slow
 def test_at_large_p_it_is_that_of_brownian_motion_between_moved_thresholds():
     """E tau = a b / gamma^2 for -a < 0 < b, here with kappa / sqrt(p) added to both; error 1/p."""
     for p in (1e2, 1e6):
@@ -105,6 +106,7 @@ def test_bad_requests_are_refused(arguments, cure):
         ns.mean_time_to_failure(FRICTION, **arguments)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_met_or_awaited_is_refused():
     """A tolerance below rounding, with the best value; a threshold that no path reaches."""
     with pytest.raises(ToleranceError, match="above tol") as refused:

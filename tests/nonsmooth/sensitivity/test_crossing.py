@@ -97,6 +97,7 @@ def test_the_scale_is_a_threshold_and_a_time():
     assert np.all(np.abs(by_p["derivative"] - expected) <= by_p["derivative_error"] + error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parameter", ["threshold", "p", "damping", "n", "sigma"])
 def test_loose_tolerances_hold(parameter):
     """The error that is stated to a loose tolerance contains the value of a tight one."""

@@ -78,11 +78,15 @@ def test_observable_with_the_parameter_in_it():
 @pytest.mark.parametrize(
     ("scene", "parameter"),
     [
-        (PLASTIC.with_n(20), "damping"),
-        (PLASTIC.with_n(20), "n"),
+        pytest.param(PLASTIC.with_n(20), "damping", marks=pytest.mark.slow),
+        pytest.param(PLASTIC.with_n(20), "n", marks=pytest.mark.slow),
         (OBSTACLE.with_n(20), "sigma"),
         pytest.param(ns.Scene("friction", "langevin", n=5), "n", marks=pytest.mark.slow),
-        (ns.Scene("friction", n=5, potential="x**2/2", observable="x"), "n"),
+        pytest.param(
+            ns.Scene("friction", n=5, potential="x**2/2", observable="x"),
+            "n",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_two_variables(scene, parameter):

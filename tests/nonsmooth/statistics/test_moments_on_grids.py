@@ -78,6 +78,7 @@ def test_linear_oscillator(seed):
         assert np.all(np.abs(found[name] - values) <= found[f"{name}_error"])
 
 
+@pytest.mark.slow
 def test_square_of_a_linear_oscillator():
     """G = x^2 is not odd, its mean is not 0, and its Poisson solutions are of degree 2 and 4."""
     scene = ns.Scene(
@@ -103,6 +104,7 @@ def solved(request):
     return scene, ns.variance(scene, [EARLY[request.param], 0.5, 1.0, 3.0, 8.0, 200.0, 1000.0])
 
 
+@pytest.mark.slow
 def test_growth_at_long_times(solved):
     """The slope of v between 200 and 1000 is gamma^2: the constant cancels, the rest has died."""
     scene, found = solved
@@ -112,6 +114,7 @@ def test_growth_at_long_times(solved):
     assert abs((v[-1] - v[-2]) / 800 - gamma2.value) <= allowed
 
 
+@pytest.mark.slow
 def test_early_times(solved):
     """Before the kinks are reached the scene is linear."""
     scene, found = solved
@@ -125,6 +128,7 @@ def test_early_times(solved):
     assert abs(found["v"][0] - exact) <= found["v_error"][0]
 
 
+@pytest.mark.slow
 def test_monte_carlo(solved):
     """Var D at four times; four standard errors, which chance exceeds once in 1300 runs."""
     scene, found = solved
@@ -138,6 +142,7 @@ def test_monte_carlo(solved):
     assert np.all(np.abs(squares.mean(axis=1) - middle["v"].values) <= allowed)
 
 
+@pytest.mark.slow
 def test_projection_against_the_whole_exponential():
     """On one coarse grid, the matrix exponential of the equations of q = E Delta^2 and w."""
     scene = SCENES["elasto_plastic"]

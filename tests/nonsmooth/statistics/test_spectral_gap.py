@@ -39,6 +39,7 @@ def test_dry_friction_in_the_limit():
     assert found.value == pytest.approx(LAMBDA_LIMIT, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_correlations_decay_at_the_gap():
     """The mean of the state forgets where it started at least as fast as the gap says."""
     scene = ns.Scene(

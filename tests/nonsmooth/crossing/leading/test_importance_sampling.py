@@ -42,10 +42,10 @@ def distance(found, exact):
     ("threshold", "horizon", "p"),
     [
         pytest.param((-np.inf, 0.6), 2.0, 10.0, marks=pytest.mark.slow),  # W = 1.8e-1
-        (1.5, 2.0, 10.0),  # 7.3e-3
-        ((-2.5, 2.0), 2.0, 10.0),  # unequal levels, 2.6e-4
+        pytest.param(1.5, 2.0, 10.0, marks=pytest.mark.slow),  # 7.3e-3
+        pytest.param((-2.5, 2.0), 2.0, 10.0, marks=pytest.mark.slow),  # unequal levels, 2.6e-4
         ((-np.inf, 4.0), 2.0, 10.0),  # 5e-10
-        (3.0, 4.0, 1.0),  # 5.3e-4, a large deviation
+        pytest.param(3.0, 4.0, 1.0, marks=pytest.mark.slow),  # 5.3e-4, a large deviation
     ],
 )
 def test_one_variable_against_the_solver(threshold, horizon, p):

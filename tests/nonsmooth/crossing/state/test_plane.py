@@ -17,6 +17,7 @@ def solved(scene, variable, levels, tol):
     )
 
 
+@pytest.mark.slow
 def test_displacement_is_the_integral_of_the_velocity():
     """Without a potential x = int y, whose crossings are solved in quite another way.
 

@@ -52,6 +52,7 @@ def test_displacement_is_the_integral_of_the_velocity():
     assert np.max(off(run, exact)) < SURE
 
 
+@pytest.mark.slow
 def test_tolerance_is_met():
     """|error| <= tol at every horizon; a false alarm in 100 runs."""
     exact = ns.state_crossing_probability(FRICTION, "y", 0.7, HORIZONS)["probability"]

@@ -77,6 +77,7 @@ def test_without_any_folder_there_is_no_cache_and_a_line_says_so(library, tmp_pa
     ]
 
 
+@pytest.mark.slow
 def test_copies_of_the_library_share_what_they_compiled(library, tmp_path):
     """Machine code is found by its package: the same source elsewhere loads it."""
     twin = tmp_path / "twin"

@@ -56,6 +56,7 @@ def test_known_answers():
     assert numbers[-1] == LATE
 
 
+@pytest.mark.slow
 def test_moments(sample):
     """The first six moments, each within z standard errors of the normal's."""
     z = stats.norm.isf(FALSE_ALARM / 2 / 6)
