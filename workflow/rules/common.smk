@@ -26,7 +26,11 @@ def settings(section, *keys, **renamed):
     name="key".
     """
     keys = {key: key for key in keys} | renamed
-    return {name: lookup(f"{section}/{key}", within=config) for name, key in keys.items()}
+    # lookup walks all that it looks within
+    topic, *inner = section.split("/")
+    return {
+        name: lookup("/".join([*inner, key]), within=config[topic]) for name, key in keys.items()
+    }
 
 
 def number(wildcard):
