@@ -41,6 +41,7 @@ def test_a_new_n_is_solved_alone(finished):
     }
 
 
+@pytest.mark.slow
 def test_the_threshold_reruns_the_crossings_only(finished):
     """Changing b."""
     edit(finished.folder / "config.yaml", "threshold: 0.6\n  p:", "threshold: 0.7\n  p:")
@@ -85,6 +86,7 @@ def test_a_module_reruns_exactly_the_rules_that_use_it(finished):
     }
 
 
+@pytest.mark.slow
 def test_a_module_is_followed_through_other_modules(finished):
     """exact_flows.py is imported by the splitting only, which every simulation uses."""
     with open(finished.folder / "src/nonsmooth/paths/kernels/exact_flows.py", "a") as file:
@@ -101,6 +103,7 @@ def test_a_module_is_followed_through_other_modules(finished):
     assert not untouched & jobs.keys()
 
 
+@pytest.mark.slow
 def test_the_template_reruns_the_paper_only(finished):
     """Changing a sentence."""
     edit(finished.folder / "paper/paper.typ", "= Trajectories", "= Some trajectories")
@@ -144,6 +147,7 @@ def test_an_interrupted_run_is_resumed_to_the_same_bytes(smoke_run):
     assert [path.read_bytes() for path in lost] == before
 
 
+@pytest.mark.slow
 def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
     """One job, for there is one scene."""
     edit(
@@ -156,6 +160,7 @@ def test_a_new_p_of_the_sweep_is_simulated_alone(finished):
     assert jobs["sweep_crossing"] == 1
 
 
+@pytest.mark.slow
 def test_a_new_limit_of_the_deformation_is_simulated_alone(finished):
     """gamma^2 is not computed again."""
     edit(finished.folder / "config/smoke.yaml", "limits: [4]", "limits: [4, 6]")

@@ -78,6 +78,7 @@ def test_derivatives_have_no_limit():
         ns.crossing_probability(scene, 0.6, [2.0], method="asymptotic")
 
 
+@pytest.mark.slow
 def test_corrected_formula_is_taken_where_its_error_is_small():
     """At large p it is taken, but not for a g above V, nor for a tol below its error."""
     problem = {"threshold": 0.6, "horizons": HORIZONS, "p": 1000.0}

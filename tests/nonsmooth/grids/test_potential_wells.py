@@ -13,7 +13,7 @@ from nonsmooth.statistics import tuning as statistics_tuning
 from references import FRICTION
 
 
-@pytest.mark.parametrize("barrier", [0.5, 2.0, 8.0])
+@pytest.mark.parametrize("barrier", [0.5, 2.0, pytest.param(8.0, marks=pytest.mark.slow)])
 def test_the_forcing_may_mix_slowly(barrier):
     """Friction under an eta with two wells: what resists has the gamma^2 of the forcing.
 

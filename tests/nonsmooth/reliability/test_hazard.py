@@ -40,6 +40,7 @@ def test_solved_hazard_integrates_to_log_survival_and_ends_at_the_leading_rate()
     assert np.all(found["hazard_rate_error"] < 1e-4)
 
 
+@pytest.mark.slow
 def test_sampled_hazard_agrees_with_the_corrected_formula():
     """Counts within a fifth of T, at p = 1000, where the formula is known to 1e-6."""
     horizons = [0.5, 1.0, 2.0, 8.0]

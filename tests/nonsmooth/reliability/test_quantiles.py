@@ -24,7 +24,9 @@ def test_deterministic_threshold_inverts_W_and_the_time_inverts_the_threshold():
     assert time["lower"] * (1 - 2 * slack) < 2.0 < time["upper"] * (1 + 2 * slack)
 
 
-@pytest.mark.parametrize("sides", ["both", "upper", "lower"])
+@pytest.mark.parametrize(
+    "sides", ["both", *(pytest.param(s, marks=pytest.mark.slow) for s in ("upper", "lower"))]
+)
 def test_at_large_p_the_threshold_is_that_of_brownian_motion(sides):
     """A closed root of W_star; its distance is at most that of kappa / sqrt(p) at p = 10^8."""
     lower = None if sides == "both" else -np.inf

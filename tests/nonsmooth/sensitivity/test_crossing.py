@@ -12,10 +12,8 @@ from references import FRICTION
 HORIZONS = np.array([0.5, 2.0, 8.0])
 
 
-@pytest.mark.parametrize(
-    ("method", "tol"),
-    [("monte_carlo", 3e-2), pytest.param("deterministic", 1e-3, marks=pytest.mark.slow)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("method", "tol"), [("monte_carlo", 3e-2), ("deterministic", 1e-3)])
 def test_scaling_with_sigma(method, tol):
     """A linear scene: int y is linear in sigma, so that W depends on threshold / sigma alone.
 

@@ -18,6 +18,7 @@ def test_there_are_many_of_all_kinds():
     assert len({m.kind.partition(":")[0] for m in BAD}) > 25
 
 
+@pytest.mark.slow
 def test_bad_configurations_are_refused(tmp_path):
     """Each in a line with file, key and cure."""
     answers = [(m.kind, m.key, faults(m, answer(m, tmp_path))) for m in BAD]

@@ -29,6 +29,7 @@ def test_displacement_is_the_integral_of_the_velocity():
     assert np.all(run["probability_error"] <= 1e-3)
 
 
+@pytest.mark.slow
 def test_velocity_does_not_see_a_weak_spring():
     """With U = 1e-6 x^2 / 2 the velocity is that of one variable, up to 1e-6 of the distance x."""
     weak = ns.Scene("elasto_plastic", n=20, potential="5e-7*x**2")
@@ -41,9 +42,9 @@ def test_velocity_does_not_see_a_weak_spring():
 @pytest.mark.parametrize(
     ("scene", "variable", "levels"),
     [
-        (PLASTIC.with_n(20), "y", 1.2),
+        pytest.param(PLASTIC.with_n(20), "y", 1.2, marks=pytest.mark.slow),
         (PLASTIC.with_n(20), "x", 0.7),
-        (OBSTACLE.with_n(np.inf), "x", 1.0),
+        pytest.param(OBSTACLE.with_n(np.inf), "x", 1.0, marks=pytest.mark.slow),
         pytest.param(OBSTACLE, "y", (-np.inf, 1.3), marks=pytest.mark.slow),
         pytest.param(ns.Scene("friction", "langevin", n=5), "y", 0.3, marks=pytest.mark.slow),
         (ns.Scene("friction", ns.KanaiTajimi(2.0, 0.5)), "eta", (-0.6, 0.9)),
