@@ -13,7 +13,7 @@ from nonsmooth.checks import (
     require_tolerance,
 )
 from nonsmooth.crossing.first_passage.distribution import default_tolerance
-from nonsmooth.errors import answered
+from nonsmooth.errors import ToleranceError, answered
 from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
@@ -46,9 +46,9 @@ def crossing_sensitivity(
         levels both move outwards by the same distance.
     method : {"deterministic", "monte_carlo"}, optional
         ``"deterministic"`` differentiates the transform of the crossing time, by its adjoint
-        equation. It is chosen for one state variable. For starts far in the tails, and for two
-        variables where `crossing_probability` solves them, it takes differences of high order of
-        solved probabilities; six solutions of two variables take minutes. ``"monte_carlo"`` is
+        equation. It is chosen for one state variable. Where this has no answer, as for starts far
+        in the tails, and for two variables where `crossing_probability` solves them, it takes
+        differences of high order of solved probabilities; six of two variables take minutes. ``"monte_carlo"`` is
         chosen for all others and if `tol` is so loose that it is faster; it takes differences of
         paths that share their noise.
     tol : float, optional
@@ -91,8 +91,7 @@ def crossing_sensitivity(
         if method == "deterministic":
             usual = settings.solved[min(scene.dimension, len(settings.solved)) - 1]
             accuracy = usual if wanted is None else wanted
-            solved = first_passage if first_passage.applies(scene) else differences
-            return solved.logarithmic_derivative(question, parameter, accuracy)
+            return _solved(question, parameter, accuracy)
         accuracy = settings.sampled if wanted is None else wanted
         return sampled.logarithmic_derivative(question, parameter, accuracy, seed, threads)
 
@@ -106,3 +105,22 @@ def crossing_sensitivity(
         return dataset(coords, variables, method=method, parameter=parameter)
 
     return answered(solve, present, tol_given=wanted is not None)
+
+
+def _solved(question, parameter, tol):
+    """Solve the adjoint equation; take differences where it has no answer, or not to a tolerance.
+
+    It has none where its modes are rounded, and few digits where W has fronts.
+    """
+    refusals = []
+    for solver in (first_passage, differences):
+        if solver is differences or first_passage.applies(question.scene):
+            try:
+                return solver.logarithmic_derivative(question, parameter, tol)
+            except ToleranceError as refused:
+                refusals.append(refused)
+    raise min(refusals, key=_worst_error)
+
+
+def _worst_error(refused):
+    return np.inf if refused.result is None else np.max(refused.result[1])

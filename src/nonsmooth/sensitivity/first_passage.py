@@ -6,13 +6,14 @@ is small where the probability is, so that one vertical line serves all times.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
 from nonsmooth.crossing.first_passage import tuning as of_first_passage
 from nonsmooth.crossing.first_passage import vertical_lines
 from nonsmooth.crossing.first_passage.line import Intervals, LineProblem
-from nonsmooth.crossing.first_passage.saddle_points import saddle_points
+from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_points
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.adjoint import Adjoint
 from nonsmooth.kinetic.ordinates_line import Change, changed, whole_ordinates
@@ -52,45 +53,80 @@ def logarithmic_derivative(
     Returns
     -------
     value, error : numpy.ndarray, shape (k,)
-        The error is what finer grids and other places of the fit change, the largest of all times.
+        The error is what finer grids and other places of the fit change, the largest of all times,
+        and at least some of what the change before was.
 
     Raises
     ------
     ToleranceError
         If `tol` is not met; the best is its `result`.
     """
-    solver, refinement = _Solver(question, parameter, tol), of_first_passage.REFINEMENT
-    times, levels = question.times, of_first_passage.LINE.levels
+    times, line, refinement = question.times, of_first_passage.LINE, of_first_passage.REFINEMENT
+    (problem,) = Intervals(question.scene, [question.levels]).problems
+    saddles = saddle_points(problem, times)
+    if saddles.bound[-1] < np.log(line.least_probability):  # nothing crosses
+        return np.zeros(len(times)), np.full(len(times), tuning.ADJOINT.nothing)
+    solver = _Solver(question, parameter, problem, saddles, tol)
     rounding = tuning.ADJOINT.rounding * (1 + question.scene.damping * times[-1])
 
     def error(found):
-        change = np.max(np.abs(found[-1] - found[-2]))
+        changes = [np.max(np.abs(fine - coarse)) for coarse, fine in pairwise(found)]
+        # two levels may agree by chance
+        change = max(changes[-1], tuning.ADJOINT.falls * max(changes[-2:]))
         return refinement.safety * change + refinement.by_chance * tol + rounding
 
+    worst = [np.inf]
+
+    def hopeless(_, error):
+        """Whether the error no longer falls: it is rounding then, or that of a fit to fronts."""
+        worst.append(error)
+        return not worst[-1] < worst[-2]
+
     found = until_agreement(
-        [level.resolution for level in levels], solver.solve, error, lambda _, error: error <= tol
+        [level.resolution for level in line.levels],
+        solver.solve,
+        error,
+        lambda _, error: error <= tol,
+        hopeless,
     )
-    answer = found.value, np.full(len(times), found.error)
     if found.met:
-        return answer
+        return found.value, np.full(len(times), found.error)
+    # solutions that do not come closer to each other say how far off they may all be
+    apart = max(np.max(np.abs(found.value - other)) for other in found.solutions[-3:])
+    answer = found.value, np.full(len(times), max(found.error, refinement.safety * apart))
     raise ToleranceError(
-        f"the derivative by {parameter} has an error of {found.error:.1e} times the parameter, "
+        f"the derivative by {parameter} has an error of {answer[1][0]:.1e} times the parameter, "
         f"above tol = {tol:g}; loosen tol",
         answer,
     )
 
 
 class _Solver:
-    """The derivative on grids of some degree, all on one vertical line."""
+    """The derivative on grids of some degree, all on one vertical line.
 
-    def __init__(self, question: Question, parameter: str, tol: float):
-        self.question, self.parameter = question, parameter
-        (self.problem,) = Intervals(question.scene, [question.levels]).problems
+    Parameters
+    ----------
+    question, parameter, tol
+        As for `logarithmic_derivative`.
+    problem : LineProblem
+    saddles : SaddlePoints
+        Of the problem.
+    """
+
+    def __init__(
+        self,
+        question: Question,
+        parameter: str,
+        problem: LineProblem,
+        saddles: SaddlePoints,
+        tol: float,
+    ):
+        self.question, self.parameter, self.problem = question, parameter, problem
         lines = of_first_passage.VERTICAL_LINES
         self.accuracy = max(lines.best, lines.accuracy * tol)
         self.abscissa = 1 / question.times[-1]
         share = tuning.ADJOINT.negligible * self.accuracy
-        self.begun = saddle_points(self.problem, question.times).begin(self.abscissa, share)
+        self.begun = saddles.begin(self.abscissa, share)
         self._offset = 0.0
 
     def solve(self, degree: int) -> np.ndarray:

@@ -42,8 +42,12 @@ class Adjoint:
     """The differentiated transform of one variable."""
 
     negligible: float = 1e-2  # chosen: a share of F below so much of the accuracy counts as none
+    falls: float = 0.03  # chosen: least change of two levels, over the change before, for an error
     # fitted: to differences of probabilities that are solved to 1e-11
     rounding: float = 1e-12
+    # derived: probabilities that are taken to be 0 are below 1e-14, and derivatives at most some
+    # times the logarithm as large
+    nothing: float = 1e-12
 
 
 @dataclass(frozen=True)

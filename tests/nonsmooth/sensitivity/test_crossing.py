@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.sensitivity import differences, first_passage
 from nonsmooth.sensitivity.questions import Question
 from references import FRICTION
@@ -55,6 +55,45 @@ def test_adjoint_and_differences(scene, levels, parameter):
     value, of_difference = differences.logarithmic_derivative(question, parameter, 1e-4)
     assert np.all(np.abs(exact - value) <= error + of_difference)
     assert np.max(np.abs(value)) > 10 * np.max(of_difference), "the comparison would see nothing"
+
+
+@pytest.mark.slow
+def test_fronts_are_left_to_differences():
+    """With g = sign(y) but for a small part, paths that never turn arrive together.
+
+    The adjoint equation misses the tolerance, and differences answer, which agree with those of a
+    finer tolerance.
+    """
+    scene = ns.Scene("friction", n=1000, observable="friction_force")
+    question = Question(scene, -0.6, 0.6, HORIZONS, 10.0)
+    with pytest.raises(ToleranceError) as refused:
+        first_passage.logarithmic_derivative(question, "p", 1e-4)
+    fine, bound = differences.logarithmic_derivative(question, "p", 1e-5)
+    value, error = refused.value.result
+    assert np.all(np.abs(value - fine) <= error + bound)
+    run = ns.crossing_sensitivity(scene, 0.6, HORIZONS, "p", p=10.0, tol=1e-4)
+    assert np.all(np.abs(10.0 * run["derivative"] - fine) <= 10.0 * run["derivative_error"] + bound)
+
+
+def test_what_never_crosses_has_no_derivative():
+    """W is below exp(-1000) there."""
+    run = ns.crossing_sensitivity(FRICTION, 1e3, HORIZONS, "damping")
+    assert np.all(run["derivative"] == 0)
+    assert np.all(run["derivative_error"] < 1e-11)
+
+
+@pytest.mark.slow
+def test_very_stiff_scenes_are_those_in_the_limit():
+    """At n = 1e6 modes of the adjoint equation are rounded: differences of W answer.
+
+    W differs from that of n = inf by less than 1/n.
+    """
+    stiff, rigid = (
+        ns.crossing_sensitivity(FRICTION.with_n(n), 0.6, [4.0], "sigma", tol=1e-3)
+        for n in (1e6, np.inf)
+    )
+    allowed = stiff["derivative_error"] + rigid["derivative_error"] + 1e-5
+    assert np.all(np.abs(stiff["derivative"] - rigid["derivative"]) <= allowed)
 
 
 def test_far_starts_are_left_to_differences():
