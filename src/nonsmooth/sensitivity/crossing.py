@@ -48,9 +48,9 @@ def crossing_sensitivity(
         ``"deterministic"`` differentiates the transform of the crossing time, by its adjoint
         equation. It is chosen for one state variable. Where this has no answer, as for starts far
         in the tails, and for two variables where `crossing_probability` solves them, it takes
-        differences of high order of solved probabilities; six of two variables take minutes. ``"monte_carlo"`` is
-        chosen for all others and if `tol` is so loose that it is faster; it takes differences of
-        paths that share their noise.
+        differences of high order of solved probabilities; six of two variables take minutes.
+        ``"monte_carlo"`` is chosen for all others and if `tol` is so loose that it is faster; it
+        takes differences of paths that share their noise.
     tol : float, optional
         Error wanted of the derivative times the parameter (for a pair of levels, times the distance
         of the nearer one). Unless given, 1e-4 for ``"deterministic"`` or 1e-2 with two variables,
