@@ -75,12 +75,12 @@ def logarithmic_derivative(
         change = max(changes[-1], tuning.ADJOINT.falls * max(changes[-2:]))
         return refinement.safety * change + refinement.by_chance * tol + rounding
 
-    worst = [np.inf]
+    errors = [np.inf]
 
     def hopeless(_, error):
         """Whether the error no longer falls: it is rounding then, or that of a fit to fronts."""
-        worst.append(error)
-        return not worst[-1] < worst[-2]
+        errors.append(error)
+        return not errors[-1] < errors[-2]
 
     found = until_agreement(
         [level.resolution for level in line.levels],
@@ -149,12 +149,14 @@ class _Solver:
             ).at(times)
 
         value = inverted(_differentiated(question, self.parameter, self.problem, degree))
-        if self.parameter != "p":
-            return value
-        # p is a factor of the times, too: t times the density of the crossing time, of which the
-        # transform is F itself
-        density = inverted(lambda z: z / self.abscissa * probability(z))
-        return value + times * self.abscissa * density
+        if self.parameter == "p":
+            # p is a factor of the times, too: t times the density of the crossing time, of which
+            # the transform is F itself
+            density = inverted(lambda z: z / self.abscissa * probability(z))
+            value = value + times * self.abscissa * density
+        if not np.all(np.isfinite(value)):
+            raise np.linalg.LinAlgError("the derivative is not finite")
+        return value
 
 
 def _differentiated(question: Question, parameter: str, problem: LineProblem, degree: int) -> Parts:
