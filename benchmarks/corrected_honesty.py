@@ -5,16 +5,14 @@ for each of them intervals at several p. Orders 1, 2 and 3 are compared with the
 solution. It prints one line per order; `--first` is the first seed and `--scenes` how many.
 """
 
-import argparse
 import sys
 import time
-import warnings
 
 import numpy as np
-import pandas as pd
 
 import nonsmooth as ns
 from benchmarks.plane_crossing_honesty import draw
+from benchmarks.seeds import compared
 from nonsmooth.crossing.corrected_formula import corrected_crossing
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.errors import NonsmoothError
@@ -59,30 +57,14 @@ def compare(seed):
 
 def main(arguments):
     """Compare and print the table."""
-    parser = argparse.ArgumentParser(description="stated against true errors of the formulas")
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--scenes", type=int, default=20, help="how many")
-    chosen, rows = parser.parse_args(arguments), []
-    warnings.simplefilter("ignore")
-    for seed in range(chosen.first, chosen.first + chosen.scenes):
-        try:
-            for row in compare(seed):
-                rows.append(row)
-                told = ", ".join(f"{key} {value:.2g}" for key, value in row.items())
-                print(f"{seed}: {told}", file=sys.stderr, flush=True)
-        except NonsmoothError as refused:
-            print(f"{seed}: {refused}", file=sys.stderr, flush=True)
-    table = (
-        pd.DataFrame(rows)
-        .groupby(["order", "p"])
-        .agg(
-            intervals=("ratio", "size"),
-            wrong=("ratio", lambda ratio: int(np.sum(ratio > 1))),
-            median_ratio=("ratio", "median"),
-            largest_ratio=("ratio", "max"),
-            median_error=("largest", "median"),
-            largest_error=("largest", "max"),
-        )
+    rows = compared(arguments, "stated against true errors of the formulas", compare)
+    table = rows.groupby(["order", "p"]).agg(
+        intervals=("ratio", "size"),
+        wrong=("ratio", lambda ratio: int(np.sum(ratio > 1))),
+        median_ratio=("ratio", "median"),
+        largest_ratio=("ratio", "max"),
+        median_error=("largest", "median"),
+        largest_error=("largest", "max"),
     )
     print(table.to_string(float_format="{:.2g}".format))
 

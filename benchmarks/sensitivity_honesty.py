@@ -6,16 +6,14 @@ p and parameters. The derivative by the adjoint equation to 1e-4 and 1e-6 is com
 first seed and `--scenes` how many.
 """
 
-import argparse
 import sys
 import time
-import warnings
 
 import numpy as np
-import pandas as pd
 
 import nonsmooth as ns
-from nonsmooth.errors import NonsmoothError, ToleranceError
+from benchmarks.seeds import compared
+from nonsmooth.errors import ToleranceError
 from nonsmooth.sensitivity import differences, first_passage
 from nonsmooth.sensitivity.questions import Question
 
@@ -76,30 +74,15 @@ def compare(seed):
             "tol": tol,
             "stated": error.max(),
             "ratio": np.max(np.abs(value - exact) / (error + uncertain)),
-            "missed": bool(error.max() > tol),
+            "missed": int(error.max() > tol),
             "seconds": seconds,
         }
 
 
 def main(arguments):
     """Compare and print the table."""
-    parser = argparse.ArgumentParser(description="stated against true errors of derivatives")
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--scenes", type=int, default=20, help="how many")
-    chosen, rows = parser.parse_args(arguments), []
-    warnings.simplefilter("ignore")
-    for seed in range(chosen.first, chosen.first + chosen.scenes):
-        try:
-            for row in compare(seed):
-                rows.append(row)
-                told = ", ".join(
-                    f"{key} {value:.2g}" if isinstance(value, float) else f"{value}"
-                    for key, value in row.items()
-                )
-                print(f"{seed}: {told}", file=sys.stderr, flush=True)
-        except NonsmoothError as refused:
-            print(f"{seed}: {refused}", file=sys.stderr, flush=True)
-    table = pd.DataFrame(rows).groupby(["method", "tol"], as_index=False)
+    rows = compared(arguments, "stated against true errors of derivatives", compare)
+    table = rows.groupby(["method", "tol"], as_index=False)
     table = table.agg(
         scenes=("ratio", "size"),
         wrong=("ratio", lambda ratio: int(np.sum(ratio > 1))),

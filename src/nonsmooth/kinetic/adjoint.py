@@ -71,9 +71,17 @@ class Adjoint:
         -------
         numpy.ndarray of complex, shape (m,)
         """
-        flow, masses = change.flow[:, None], self._z * change.masses[:, None]
-        sources = flow * self._modes * self._slopes - masses * self._modes
-        sources -= change.stiffness @ self._modes
+        masses = self._z * change.masses[:, None]
+        return self._integrated(
+            self._flowing(change.flow) - masses * self._modes - change.stiffness @ self._modes
+        )
+
+    def _flowing(self, flow):
+        """Multiply a change of G by the slopes of the modes."""
+        return flow[:, None] * self._modes * self._slopes
+
+    def _integrated(self, sources):
+        """Integrate the adjoint solution times r, of which each mode has a column."""
         products = self._modes.T @ sources
         (h_above, h_below), (w_above, w_below) = self._h, self._w
         climb, jump, many = self._climb, self._jump, self._many
@@ -101,9 +109,7 @@ class Adjoint:
         upper, lower : numpy.ndarray of complex, shape (m,)
             0 for a threshold that is infinitely far.
         """
-        grid, many = self._grid, len(self._grid.g)
-        shrunk = ChangeOfOrdinates(np.zeros(many), -grid.masses * grid.g, np.zeros((many, many)))
-        grown = self.by_parameter(shrunk)
+        grown = self._integrated(self._flowing(-self._grid.masses * self._grid.g))
         if np.isinf(self._down):
             return grown / self._up, 0.0 * grown
         if np.isinf(self._up):

@@ -115,8 +115,9 @@ def ordinates(
     deepest: float | None = None,
     grading: float | None = None,
     distances: tuple[float, float] = (np.inf, np.inf),
+    fold: bool = True,
 ) -> Ordinates:
-    """Discretise a scene with the state y; on half of the grid if drift and g are odd.
+    """Discretise a scene with the state y.
 
     Parameters
     ----------
@@ -134,6 +135,8 @@ def ordinates(
         Greatest width of an element over its distance to a zero of g and to the start.
     distances : (float, float)
         To the lower and to the upper wall.
+    fold : bool, optional
+        Whether half of the grid is taken if drift and g are odd.
 
     Returns
     -------
@@ -145,30 +148,6 @@ def ordinates(
         If the scene has another state or noise.
     ToleranceError
         If it starts too far in the tails.
-    """
-    grid = whole_ordinates(scene, degree, time, reach, deepest, grading, distances)
-    return _halved(grid) if scene.is_odd() else grid
-
-
-def whole_ordinates(
-    scene: Scene,
-    degree: int,
-    time: float | None = None,
-    reach: float = np.inf,
-    deepest: float | None = None,
-    grading: float | None = None,
-    distances: tuple[float, float] = (np.inf, np.inf),
-) -> Ordinates:
-    """Discretise a scene with the state y, on the whole grid also if drift and g are odd.
-
-    Parameters
-    ----------
-    scene, degree, time, reach, deepest, grading, distances
-        As for `ordinates`.
-
-    Returns
-    -------
-    Ordinates
     """
     settings = tuning.LINE_ORDINATES
     time = settings.long_time / scene.damping if time is None else time
@@ -183,7 +162,8 @@ def whole_ordinates(
     stiffness = _stiffness(axis, degree, density) * scene.noise.sigma**2 / 2 / total
     masses = masses / total
     row = axis.interpolation(scene.start.get("y", 0.0)).toarray()[0]
-    return Ordinates(axis, False, axis.nodes, g, masses, {EVEN: stiffness}, {EVEN: row})
+    grid = Ordinates(axis, False, axis.nodes, g, masses, {EVEN: stiffness}, {EVEN: row})
+    return _halved(grid) if fold and scene.is_odd() else grid
 
 
 def _halved(grid):

@@ -9,7 +9,7 @@ from nonsmooth.central_differences import central
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.errors import ToleranceError
 from nonsmooth.sensitivity import tuning
-from nonsmooth.sensitivity.questions import Question
+from nonsmooth.sensitivity.questions import Question, missed
 
 
 def logarithmic_derivative(
@@ -46,11 +46,7 @@ def logarithmic_derivative(
         value, error = central(W[:3], W[3:], inexact[:3] + inexact[3:], step)
         if np.all(error <= tol):
             return value, error
-    raise ToleranceError(
-        f"the derivative by {parameter} has an error of {error.max():.1e} times the parameter, "
-        f"above tol = {tol:g}; loosen tol",
-        (value, error),
-    )
+    raise missed(parameter, tol, value, error)
 
 
 def _solved(questions, tol):

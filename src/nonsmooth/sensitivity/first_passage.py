@@ -6,6 +6,7 @@ is small where the probability is, so that one vertical line serves all times.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,9 +15,8 @@ from nonsmooth.crossing.first_passage import tuning as of_first_passage
 from nonsmooth.crossing.first_passage import vertical_lines
 from nonsmooth.crossing.first_passage.line import Intervals, LineProblem
 from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_points
-from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.adjoint import Adjoint
-from nonsmooth.kinetic.ordinates_line import Change, changed, whole_ordinates
+from nonsmooth.kinetic.ordinates_line import Change, changed, ordinates
 from nonsmooth.line.potential import depth
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.formulas import vectorised
@@ -24,7 +24,7 @@ from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import y
 from nonsmooth.sensitivity import tuning
 from nonsmooth.sensitivity.parameters import PARAMETERS, change_of_depth, derivative
-from nonsmooth.sensitivity.questions import Question
+from nonsmooth.sensitivity.questions import Question, missed
 
 Parts = Callable[[complex], np.ndarray]
 
@@ -69,7 +69,7 @@ def logarithmic_derivative(
     solver = _Solver(question, parameter, problem, saddles, tol)
     rounding = tuning.ADJOINT.rounding * (1 + question.scene.damping * times[-1])
 
-    def error(found):
+    def stated(found):
         changes = [np.max(np.abs(fine - coarse)) for coarse, fine in pairwise(found)]
         # two levels may agree by chance
         change = max(changes[-1], tuning.ADJOINT.falls * max(changes[-2:]))
@@ -85,7 +85,7 @@ def logarithmic_derivative(
     found = until_agreement(
         [level.resolution for level in line.levels],
         solver.solve,
-        error,
+        stated,
         lambda _, error: error <= tol,
         hopeless,
     )
@@ -93,12 +93,8 @@ def logarithmic_derivative(
         return found.value, np.full(len(times), found.error)
     # solutions that do not come closer to each other say how far off they may all be
     apart = max(np.max(np.abs(found.value - other)) for other in found.solutions[-3:])
-    answer = found.value, np.full(len(times), max(found.error, refinement.safety * apart))
-    raise ToleranceError(
-        f"the derivative by {parameter} has an error of {answer[1][0]:.1e} times the parameter, "
-        f"above tol = {tol:g}; loosen tol",
-        answer,
-    )
+    error = np.full(len(times), max(found.error, refinement.safety * apart))
+    raise missed(parameter, tol, found.value, error)
 
 
 class _Solver:
@@ -141,7 +137,7 @@ class _Solver:
                 return np.zeros(len(times))
             return vertical_lines.inverted(
                 parts,
-                vertical_lines.Line(self.abscissa, 1.0, line.lowest),
+                replace(line, size=1.0),
                 np.maximum(fronts, self.begun),
                 self.accuracy,
                 rising=False,
@@ -163,7 +159,7 @@ def _differentiated(question: Question, parameter: str, problem: LineProblem, de
     """Parts of the transform's derivative by the logarithm of a parameter."""
     scene, (lower, upper) = question.scene, question.levels
     of_grid = problem.fitting(degree, question.times, 0.0)
-    grid = whole_ordinates(scene, *of_grid, distances=(-lower, upper))
+    grid = ordinates(scene, *of_grid, distances=(-lower, upper), fold=False)
     value = question.value(parameter)
     if parameter in PARAMETERS:
         change = changed(scene, grid, _change(scene, parameter))
@@ -171,14 +167,11 @@ def _differentiated(question: Question, parameter: str, problem: LineProblem, de
         def of(adjoint):
             return value * adjoint.by_parameter(change)
 
-    elif parameter == "threshold":  # both levels move outwards by the same distance
-        ways = np.full(2, value * np.sqrt(question.p))
-
-        def of(adjoint):
-            return ways @ adjoint.by_levels()
-
-    else:  # the levels have the factor sqrt(p)
-        ways = np.nan_to_num([upper / 2, -lower / 2], posinf=0.0)
+    else:
+        if parameter == "threshold":  # both levels move outwards by the same distance
+            ways = np.full(2, value * np.sqrt(question.p))
+        else:  # the levels have the factor sqrt(p)
+            ways = np.nan_to_num([upper / 2, -lower / 2], posinf=0.0)
 
         def of(adjoint):
             return ways @ adjoint.by_levels()

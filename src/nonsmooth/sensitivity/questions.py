@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.sensitivity.parameters import value_of
 
@@ -52,3 +53,24 @@ class Question:
         if parameter == "threshold":  # both levels move outwards by the same distance
             return replace(self, lower=self.lower - part * value, upper=self.upper + part * value)
         return replace(self, scene=self.scene.with_parameter(parameter, (1 + part) * value))
+
+
+def missed(parameter: str, tol: float, value: np.ndarray, error: np.ndarray) -> ToleranceError:
+    """Return the refusal of a derivative whose error is above the tolerance.
+
+    Parameters
+    ----------
+    parameter : str
+    tol : float
+    value, error : numpy.ndarray, shape (k,)
+        Its `result`.
+
+    Returns
+    -------
+    ToleranceError
+    """
+    return ToleranceError(
+        f"the derivative by {parameter} has an error of {error.max():.1e} times the parameter, "
+        f"above tol = {tol:g}; loosen tol",
+        (value, error),
+    )

@@ -9,7 +9,6 @@ step.
 import numpy as np
 
 from nonsmooth.crossing import tuning as crossing_tuning
-from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.absorption.passages import coupled_passages
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
 from nonsmooth.paths.moments import fine_bias_over_change
@@ -18,7 +17,7 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.sensitivity import tuning
-from nonsmooth.sensitivity.questions import Question
+from nonsmooth.sensitivity.questions import Question, missed
 
 
 def logarithmic_derivative(
@@ -67,11 +66,7 @@ def logarithmic_derivative(
         told = f"the derivative by {parameter} has an error of {np.max(error):.1e}"
         steps = 12 * question.times[-1] / step
         require_possible(paths, steps, told, tol, result=(value, error))
-    raise ToleranceError(
-        f"the derivative by {parameter} has an error of {np.max(error):.1e} times the parameter, "
-        f"above tol = {tol:g}; loosen tol",
-        (value, error),
-    )
+    raise missed(parameter, tol, value, error)
 
 
 def _sample(question, parameter, apart, sampling):

@@ -9,7 +9,7 @@ import nonsmooth as ns
 from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic.adjoint import Adjoint
 from nonsmooth.kinetic.case_modes import modes
-from nonsmooth.kinetic.ordinates_line import Change, changed, whole_ordinates
+from nonsmooth.kinetic.ordinates_line import Change, changed, ordinates
 from references import FRICTION
 
 # with and without a symmetry, from rest and from elsewhere, and with a flow that stands still
@@ -50,7 +50,7 @@ class TestAdjoint:
 
     def test_change_of_the_equations(self, scene, interval, z):
         """Masses, stiffness and flow are changed by hand, in the directions of a change."""
-        grid = whole_ordinates(scene, 7, time=1.0)
+        grid = ordinates(scene, 7, time=1.0, fold=False)
         moves = grid.g != 0
         direction = changed(scene, grid, CHANGE)
         # nodes at which the flow stands still must not begin to move
@@ -72,7 +72,7 @@ class TestAdjoint:
 
     def test_thresholds(self, scene, interval, z):
         """Each threshold is moved outwards."""
-        grid, (lower, upper) = whole_ordinates(scene, 7, time=1.0), interval
+        grid, (lower, upper) = ordinates(scene, 7, time=1.0, fold=False), interval
         by_upper, by_lower = Adjoint(grid, z, lower, upper).by_levels()
         expected = [
             differentiated(lambda d: transform(grid, z, lower, upper + d), 1e-3),
@@ -85,7 +85,7 @@ class TestAdjoint:
 def test_changes_of_the_nodes():
     """Masses and stiffness of a scene whose damping grows, on the same elements."""
     scene = FRICTION.with_n(3)
-    grid = whole_ordinates(scene, 5)
+    grid = ordinates(scene, 5, fold=False)
     found = changed(scene, grid, Change(lambda y: (y / scene.noise.sigma) ** 2, np.zeros_like, 0.0))
 
     def ratios(damping):
