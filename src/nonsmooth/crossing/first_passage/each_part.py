@@ -4,7 +4,8 @@ Two levels may agree although they are wrong, if both leave the same part coarse
 the resolution is changed by itself. What the solution changes then is the error of this part, and
 the error is the sum over all parts. It counts at least as much of the change before as is usual for
 the part: two resolutions may agree by chance. Where changes fall slowly, it counts all that would
-follow. The parts with the largest errors are refined.
+follow. Where the order of a method is known, its changes are extrapolated, and the error is what
+this changes from one resolution to the next. The parts with the largest errors are refined.
 """
 
 from collections.abc import Callable
@@ -83,6 +84,7 @@ def _refined(parts, solution, met, tol):
     finer = np.array([part.step > 0 for part in parts])
     counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
     falls = np.array([part.falls for part in parts])[:, None, None]
+    beyond = np.array([part.beyond for part in parts])[:, None, None]
     before, found, changes, size = None, None, None, np.inf
     settled = np.full(len(parts), False)
     while True:
@@ -96,7 +98,7 @@ def _refined(parts, solution, met, tol):
             )
             if before is None:
                 before = _changes_from_coarser(parts, solution, at)
-                floor = falls * before
+                floor = falls * np.abs(before) * (beyond == 0)
         except UnstableError:
             if found is not None:
                 return found
@@ -105,9 +107,13 @@ def _refined(parts, solution, met, tol):
             at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
             continue
         rates = _rates(changes, before)
-        sizes = np.maximum(counted * np.abs(changes), floor)
+        # what the extrapolated value changes, if the change before was extrapolated, too
+        further = (1 + beyond) * changes - beyond * before
+        floor = np.where(beyond > 0, falls * np.abs(changes), floor)
+        sizes = np.maximum(counted * np.abs(further), floor)
         errors = _tails(rates)[:, None, None] * sizes
-        coarser, found = found, Found(base + changes[finer].sum(axis=0), errors.sum(axis=0))
+        value = base + ((1 + beyond) * changes)[finer].sum(axis=0)
+        coarser, found = found, Found(value, errors.sum(axis=0))
         if met(found):
             return found
         size, larger = sizes.sum(axis=0).max(), size
@@ -118,7 +124,7 @@ def _refined(parts, solution, met, tol):
         worst = errors.max(axis=(1, 2))
         settled = worst <= settings.settled * tol
         chosen = _to_refine(np.where((left > 0) & ~settled, worst, 0.0), errors, falls, tol)
-        if not chosen.any() or _least(changes, rates, falls, left) > settings.hopeless * tol:
+        if not chosen.any() or _least(further, rates, falls, left) > settings.hopeless * tol:
             return found
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
         refined = chosen[:, None, None]
@@ -130,7 +136,7 @@ def _changes_from_coarser(parts, solution, at):
     base = solution(at)
     return np.array(
         [
-            np.abs(base - solution(_stepped(at, k, -1)))
+            base - solution(_stepped(at, k, -1))
             if part.step > 0 and at[k] > 0
             else np.zeros_like(base)
             for k, part in enumerate(parts)

@@ -85,6 +85,9 @@ class Part:
         What a resolution changes, over what the one before has changed: at least, for an error.
     coarser : bool
         Whether it begins with the resolution before `first` for a loose tolerance.
+    beyond : float
+        Over a change to the next finer resolution, the sum of all that would follow, if this is
+        known: such changes are extrapolated. 1/3 for a method of order 2 and halved steps.
     """
 
     first: int
@@ -92,6 +95,7 @@ class Part:
     step: int
     falls: float = 0.1
     coarser: bool = False
+    beyond: float = 0.0
 
 
 @dataclass(frozen=True)

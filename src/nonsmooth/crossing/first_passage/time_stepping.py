@@ -57,12 +57,12 @@ def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.nd
             degree,
             finest * min(way, -problem.lower, problem.upper),
             widest,
-            settings.reached / math.sqrt(step) * spread,
+            settings.reached / math.sqrt(min(step, 1.0)) * spread,
         )
         first = step * settings.first * min(duration, settings.early / damping)
         steps = _steps(problem, driven, other, interval, first)
         longest = step * settings.longest / max(damping, steps.rate)
-        at, values = _survival(steps, longest, last)
+        at, values = _survival(steps, longest, settings.per_length / step, last)
         found = CubicSpline(at, values)(times)
         return np.array([1 - found, found])
 
@@ -109,7 +109,7 @@ def _steps(problem, driven, other, interval, step):
     return TensorSteps(problem.grids.tensor_grid(driven, other), interval, step)
 
 
-def _survival(steps, longest, last):
+def _survival(steps, longest, per_length, last):
     """Survival probability from the start at times from 0 to `last`."""
     settings = tuning.TIME_STEPPING
     times, values = [0.0], [1.0]
@@ -120,7 +120,7 @@ def _survival(steps, longest, last):
         values.append(steps.survival())
         if not -settings.unstable < values[-1] < 1 + settings.unstable:
             raise UnstableError(f"a survival probability of {values[-1]:g}")
-        if times[-1] >= settings.per_length * steps.step and 2 * steps.step <= longest:
+        if times[-1] >= per_length * steps.step and 2 * steps.step <= longest:
             steps.transport_half()
             steps.doubled()
             steps.transport_half()

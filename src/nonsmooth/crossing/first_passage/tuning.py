@@ -266,11 +266,12 @@ class TimeStepping:
         (6, 2e-3, 0.12),
         (7, 1e-3, 0.1),
     )
-    steps: tuple[float, ...] = (1.0, 0.5, 0.25, 0.125, 0.06)  # chosen: lengths, relative to ...
+    steps: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)  # chosen: lengths, relative to ...
     longest: float = 0.05  # chosen: ... the longest step, in times of the fastest rate, and to ...
     first: float = 5e-3  # chosen: ... the first step over the mean duration, ...
     early: float = 4.0  # chosen: ... or over so many relaxation times if these are shorter
-    per_length: float = 100.0  # chosen: the step is doubled once time is so many times the step
+    # chosen: steps of length 1 are doubled once time is so many times the step, shorter ones later
+    per_length: float = 100.0
     reached: float = 6.0  # chosen: end of the axis where there is no threshold, in spreads of ...
     slow: float = 8.0  # chosen: ... int g if its correlation time is half of so many relaxations
     # chosen: values so far outside of [0, 1] mean that the solution grows; elements overshoot by
@@ -319,12 +320,13 @@ STEPPED_GRIDS = PlaneGrids(
         (10, (0.12, 0.4, 1.0), (0.5, 1.0)),
     ),
 )
-# driven and other variable of the grid, x, time; degrees of the other variable converge irregularly
+# driven and other variable of the grid, x, time; degrees of the other variable converge irregularly,
+# and steps, extrapolated, at least so that a change counts a tenth
 STEPPED_PARTS = (
     Part(2, 5, 1, 0.05, True),
     Part(2, 5, 1, 0.3, True),
-    Part(2, 4, 1, 0.1, True),
-    Part(0, 3, 1, 0.25),
+    Part(1, 4, 1, 0.1),
+    Part(1, 5, 1, 0.1, beyond=1 / 3),
 )
 # driven and other variable of the grid, basis, contour
 PLANE_PARTS = (Part(2, 6, 1, 0.05, True), Part(2, 6, 1, 0.3, True), Part(1, 4, -1), Part(1, 4, -1))

@@ -56,6 +56,19 @@ class TestRefineEachPart:
         assert (len([at for at in asked if at[1] > 0]) == 1) == once
         assert abs(found.value[0, 0]) <= found.change[0, 0]
 
+    @pytest.mark.parametrize("irregular", [0.0, 0.3, -0.3])
+    def test_extrapolates_a_known_order(self, irregular):
+        """Errors of order 2 cancel; what is left of order 3 is below what is stated."""
+
+        def solve(at):
+            return np.array([[0.25 ** at[0] + irregular * 0.125 ** at[0]], [0.0]])
+
+        part = Part(1, 9, 1, falls=0.1, beyond=1 / 3)
+        found = refine_each_part((part,), solve, lambda found: found.change.max() <= 1e-4, 1e-4)
+        assert abs(found.value[0, 0]) <= found.change.max() <= 1e-4
+        if not irregular:
+            assert abs(found.value[0, 0]) < 1e-15
+
     def test_a_change_counts_a_tenth_of_the_one_before(self):
         """An error that changes its sign and seems to vanish is not taken to be zero."""
         values = [0.0, 1e-2, 1e-2, 1e-2]
