@@ -266,7 +266,8 @@ class TimeStepping:
         (6, 2e-3, 0.12),
         (7, 1e-3, 0.1),
     )
-    steps: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)  # chosen: lengths, relative to ...
+    # chosen: lengths, relative to ...
+    steps: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
     longest: float = 0.05  # chosen: ... the longest step, in times of the fastest rate, and to ...
     first: float = 5e-3  # chosen: ... the first step over the mean duration, ...
     early: float = 4.0  # chosen: ... or over so many relaxation times if these are shorter
@@ -320,8 +321,8 @@ STEPPED_GRIDS = PlaneGrids(
         (10, (0.12, 0.4, 1.0), (0.5, 1.0)),
     ),
 )
-# driven and other variable of the grid, x, time; degrees of the other variable converge irregularly,
-# and steps, extrapolated, at least so that a change counts a tenth
+# driven and other variable of the grid, x, time. Degrees of the other variable converge
+# irregularly; an extrapolated step is taken to leave a tenth of its change, at least
 STEPPED_PARTS = (
     Part(2, 5, 1, 0.05, True),
     Part(2, 5, 1, 0.3, True),
