@@ -98,7 +98,7 @@ def _refined(parts, solution, met, tol):
             )
             if before is None:
                 before = _changes_from_coarser(parts, solution, at)
-                floor = falls * np.abs(before) * (beyond == 0)
+                floor = falls * np.abs(before)
         except UnstableError:
             if found is not None:
                 return found
@@ -107,12 +107,13 @@ def _refined(parts, solution, met, tol):
             at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
             continue
         rates = _rates(changes, before)
-        # what the extrapolated value changes, if the change before was extrapolated, too
-        further = (1 + beyond) * changes - beyond * before
+        extrapolated = (1 + beyond) * changes
+        # what this adds to the change before, which is extrapolated, too
+        further = extrapolated - beyond * before
         floor = np.where(beyond > 0, falls * np.abs(changes), floor)
         sizes = np.maximum(counted * np.abs(further), floor)
         errors = _tails(rates)[:, None, None] * sizes
-        value = base + ((1 + beyond) * changes)[finer].sum(axis=0)
+        value = base + extrapolated[finer].sum(axis=0)
         coarser, found = found, Found(value, errors.sum(axis=0))
         if met(found):
             return found
