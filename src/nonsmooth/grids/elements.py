@@ -27,8 +27,8 @@ class Axis:
     ----------
     edges : numpy.ndarray, shape (e + 1,)
         Of the elements.
-    local : numpy.ndarray, shape (d + 1,)
-        Nodes of an element, mapped to [-1, 1].
+    local : tuple of numpy.ndarray, shapes (d + 1,)
+        Nodes of each element, mapped to [-1, 1].
     nodes, weights : numpy.ndarray, shape (k,)
         Increasing nodes and the quadrature weights that belong to them.
     slope : scipy.sparse.csr_array, shape (k, k)
@@ -47,7 +47,7 @@ class Axis:
     """
 
     edges: np.ndarray
-    local: np.ndarray
+    local: tuple[np.ndarray, ...]
     nodes: np.ndarray
     weights: np.ndarray
     slope: sp.csr_array
@@ -70,20 +70,20 @@ class Axis:
         scipy.sparse.csr_array, shape (q, k)
         """
         points = np.atleast_1d(np.asarray(points, dtype=float))
-        inside = np.flatnonzero((points >= self.edges[0]) & (points <= self.edges[-1]))
-        element = np.clip(
-            np.searchsorted(self.edges, points[inside], "right") - 1, 0, len(self.edges) - 2
-        )
-        left, right = self.edges[element], self.edges[element + 1]
-        values, _ = lagrange(self.local, (2 * points[inside] - left - right) / (right - left))
-        width = len(self.local)
-        # neighbouring continuous elements share a node
-        stride = (len(self.nodes) - width) // max(len(self.edges) - 2, 1)
-        columns = (element * stride)[:, None] + np.arange(width)
-        rows = np.repeat(inside, width)
-        return sp.csr_array(
-            (values.ravel(), (rows, columns.ravel())), shape=(len(points), len(self.nodes))
-        )
+        inside = (points >= self.edges[0]) & (points <= self.edges[-1])
+        element = np.clip(np.searchsorted(self.edges, points, "right") - 1, 0, len(self.local) - 1)
+        shared = self.curvature is not None  # neighbouring continuous elements share a node
+        first = np.cumsum([0] + [len(local) - shared for local in self.local])
+        blocks = []
+        for e in np.unique(element[inside]):
+            rows = np.flatnonzero(inside & (element == e))
+            left, right = self.edges[e : e + 2]
+            values, _ = lagrange(self.local[e], (2 * points[rows] - left - right) / (right - left))
+            columns = first[e] + np.arange(len(self.local[e]))
+            blocks.append((values, *np.broadcast_arrays(rows[:, None], columns)))
+        parts = [np.concatenate([p.ravel() for p in part]) for part in zip(*blocks, strict=True)]
+        values, rows, columns = parts or ([], [], [])
+        return sp.csr_array((values, (rows, columns)), shape=(len(points), len(self.nodes)))
 
 
 @lru_cache(maxsize=64)
@@ -198,7 +198,7 @@ def continuous(edges: np.ndarray, degree: int) -> Axis:
     none = sp.csr_array((0, size))
     return Axis(
         edges,
-        points,
+        (points,) * len(half),
         nodes,
         weights,
         sp.csr_array(first / weights[:, None]),
@@ -211,38 +211,40 @@ def continuous(edges: np.ndarray, degree: int) -> Axis:
     )
 
 
-def discontinuous(edges: np.ndarray, degree: int) -> Axis:
+def discontinuous(edges: np.ndarray, degrees: int | np.ndarray) -> Axis:
     """Make discontinuous elements with Gauss nodes, exact for drifts linear in each element.
 
     Parameters
     ----------
     edges : numpy.ndarray, shape (e + 1,)
-    degree : int
+    degrees : int or numpy.ndarray of int, shape (e,)
+        Of all elements, or of each.
 
     Returns
     -------
     Axis
-        With e * (degree + 1) nodes and e - 1 faces.
+        With degree + 1 nodes for each element, and e - 1 faces.
     """
-    points, quadrature = legendre.leggauss(degree + 1)
-    derivative = lagrange(points, points)[1]
-    left, right = lagrange(points, np.array([-1.0, 1.0]))[0]
+    degrees = np.broadcast_to(degrees, len(edges) - 1)
     half, middle = np.diff(edges) / 2, (edges[1:] + edges[:-1]) / 2
-    count, width = len(half), degree + 1
-    jump = np.zeros((count - 1, count * width))
-    lift_left, lift_right = np.zeros((2, count * width, count - 1))
-    for f in range(count - 1):
-        before = slice(f * width, (f + 1) * width)
-        after = slice((f + 1) * width, (f + 2) * width)
+    elements = [_gauss(int(degree)) for degree in degrees]
+    ends = np.cumsum(degrees + 1)
+    jump = np.zeros((len(half) - 1, ends[-1]))
+    lift_left, lift_right = np.zeros((2, ends[-1], len(half) - 1))
+    for f in range(len(half) - 1):
+        before = slice(ends[f] - degrees[f] - 1, ends[f])
+        after = slice(ends[f], ends[f + 1])
+        right, left = elements[f].right, elements[f + 1].left
         jump[f, before], jump[f, after] = -right, left
-        lift_left[before, f] = right / (quadrature * half[f])
-        lift_right[after, f] = left / (quadrature * half[f + 1])
+        lift_left[before, f] = right / (elements[f].weights * half[f])
+        lift_right[after, f] = left / (elements[f + 1].weights * half[f + 1])
+    slopes = [element.slope / h for element, h in zip(elements, half, strict=True)]
     return Axis(
         edges,
-        points,
-        (middle[:, None] + half[:, None] * points).ravel(),
-        (half[:, None] * quadrature).ravel(),
-        sp.csr_array(sp.block_diag([derivative / h for h in half])),
+        tuple(element.nodes for element in elements),
+        np.concatenate([m + h * e.nodes for m, h, e in zip(middle, half, elements, strict=True)]),
+        np.concatenate([h * e.weights for h, e in zip(half, elements, strict=True)]),
+        sp.csr_array(sp.block_diag(slopes)),
         None,
         None,
         edges[1:-1],
@@ -250,3 +252,21 @@ def discontinuous(edges: np.ndarray, degree: int) -> Axis:
         sp.csr_array(lift_left),
         sp.csr_array(lift_right),
     )
+
+
+@dataclass(frozen=True)
+class _Gauss:
+    """Gauss nodes on [-1, 1], weights, derivative, and the rows of the values at both ends."""
+
+    nodes: np.ndarray
+    weights: np.ndarray
+    slope: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+
+
+@lru_cache(maxsize=64)
+def _gauss(degree):
+    nodes, weights = legendre.leggauss(degree + 1)
+    left, right = lagrange(nodes, np.array([-1.0, 1.0]))[0]
+    return _Gauss(nodes, weights, lagrange(nodes, nodes)[1], left, right)

@@ -162,7 +162,7 @@ def _at_nodes(rate, axes, symbol):
     sides = [evaluate(rate, axes, {symbol: axis.nodes + side * near}) for side in (-1, 1)]
     widths = np.diff(axis.edges)
     share = np.full(len(axis.nodes), 0.5)
-    share[:: len(axis.local) - 1] = np.concatenate(
+    share[:: len(axis.local[0]) - 1] = np.concatenate(
         [[0.0], widths[:-1] / (widths[:-1] + widths[1:]), [1.0]]
     )
     place = list(axes).index(symbol)

@@ -228,7 +228,7 @@ def changed(scene: Scene, grid: Ordinates, change: Change) -> ChangeOfOrdinates:
     -------
     ChangeOfOrdinates
     """
-    axis, degree = grid.axis, len(grid.axis.local) - 1
+    axis, degree = grid.axis, len(grid.axis.local[0]) - 1
     bend = -change.depth(axis.nodes) * grid.masses
     flow = bend * grid.g + grid.masses / axis.weights * _summed_within(axis, change.observable)
     density = (bend + change.diffusion * grid.masses) / axis.weights
@@ -242,9 +242,9 @@ def _summed_within(axis, function):
     At an edge the function may jump.
     """
     half, middle = np.diff(axis.edges) / 2, (axis.edges[1:] + axis.edges[:-1]) / 2
-    degree = len(axis.local) - 1
+    degree = len(axis.local[0]) - 1
     _, weights, _ = lobatto(degree)
-    inside = (1 - tuning.LINE_ORDINATES.inside) * axis.local
+    inside = (1 - tuning.LINE_ORDINATES.inside) * axis.local[0]
     values = function(middle[:, None] + half[:, None] * inside) * half[:, None] * weights
     total = np.zeros(len(axis.nodes))
     np.add.at(total, np.arange(len(half))[:, None] * degree + np.arange(degree + 1), values)

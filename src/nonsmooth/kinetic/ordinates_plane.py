@@ -187,35 +187,38 @@ def axes(
     """
     made = {}
     for symbol in variables(scene):
-        end = ends[symbol]
-        edges = _positive_edges(scene, symbol, end, level, time)
-        edges = mirrored(distinct(edges[(edges > 1e-12 * end) & (edges <= end)], 1e-9 * end))
-        if symbol == scene.noise.driven:
-            made[symbol] = continuous(edges, level.driven)
-        else:
-            made[symbol] = discontinuous(edges, level.other)
+        edges, degree = _elements(scene, symbol, ends[symbol], level, time)
+        make = continuous if symbol == scene.noise.driven else discontinuous
+        made[symbol] = make(edges, degree)
     return made
 
 
-def _positive_edges(scene, symbol, end, level, time):
-    """Edges > 0 of one variable: ends, kinks, and those graded to where g = 0."""
+def _elements(scene, symbol, end, level, time):
+    """Edges of one variable: ends, kinks, and those graded to where g = 0; and their degrees."""
     settings, knot = tuning.PLANE_ORDINATES, kinks(scene).get(symbol, 0.0)
     force = scene.observes_penalty_force and scene.mechanics.argument.name == "x"
     observed = symbol in scene.numerical_observable().free_symbols
+
+    def symmetric(*edges):
+        edges = np.hstack(edges)
+        return mirrored(distinct(edges[(edges > 1e-12 * end) & (edges <= end)], 1e-9 * end))
+
     if symbol == scene.noise.driven:
         if not (observed or force):
-            return np.array([knot, end / 2, end])
-        fast = settings.fast * scene.noise.sigma * math.sqrt(time)
-        return np.append(graded(end, min(end / settings.coarsest, fast), level.ratio), knot)
+            return symmetric(knot, end / 2, end), level.driven
+        degree, coarsest = level.observed
+        finest = min(end / coarsest, settings.fast * scene.noise.sigma * math.sqrt(time))
+        return symmetric(graded(end, finest, level.ratio), knot), degree
     wall = knot < end and scene.mechanics.argument == symbol and symbol.name == "x"
-    edges = np.array([end, knot])
-    if wall:
+    edges = np.array([knot, end])
+    if wall and end - knot > settings.deep * knot:
         edges = np.append(edges, knot + (end - knot) * np.array(settings.in_wall))
     if force:  # g = 0 up to the kink
         largest, finest = (knot / part for part in settings.beside_knot)
-        return np.append(edges, knot - graded(largest, finest, level.ratio))
+        return symmetric(edges, knot - graded(largest, finest, level.ratio)), level.other
+    if wall and not observed:  # nothing happens between the walls
+        edges = symmetric(edges)
+        return edges, np.where(np.abs(edges[1:] + edges[:-1]) < 2 * knot, level.between, level.other)
     inner = knot if wall else end
-    if wall and not observed:  # nothing happens at x = 0 then
-        return np.append(edges, inner * np.array(settings.before_wall))
     finest = max(level.finest * inner, 0.0 if wall else knot)
-    return np.concatenate([edges, [settings.outer * inner], graded(inner, finest, level.ratio)])
+    return symmetric(edges, settings.outer * inner, graded(inner, finest, level.ratio)), level.other

@@ -57,8 +57,13 @@ class PlaneLevel(NamedTuple):
 
     Attributes
     ----------
-    driven, other : int
-        Polynomial degree in the variable that noise drives, and in the other.
+    driven : int
+        Polynomial degree in the variable that noise drives, if g does not depend on it.
+    observed : tuple of int and float
+        The same if g does, and the half axis over the finest element.
+    other, between : int
+        Polynomial degree in the other variable, and between its middle and a wall, if nothing
+        happens there.
     ratio : float
         Ratio of the widths of neighbouring elements, where they are graded.
     finest : float
@@ -68,7 +73,9 @@ class PlaneLevel(NamedTuple):
     """
 
     driven: int
+    observed: tuple[int, float]
     other: int
+    between: int
     ratio: float
     finest: float
     dropped: float
@@ -79,11 +86,10 @@ class PlaneOrdinates:
     """Tensor grids of two state variables."""
 
     depth: float = 14.0  # derived: outside the box the density is exp(-14) = 8e-7 of its maximum
-    coarsest: float = 9.0  # chosen: the half axis over the finest element, if noise drives g, ...
-    fast: float = 1.5  # chosen: ... which is at most so many sigma sqrt(t)
+    fast: float = 1.5  # chosen: largest of the finest elements if noise drives g, in sigma sqrt(t)
     outer: float = 0.4  # chosen: an edge in the outermost element, over the end of the axis
-    before_wall: tuple[float, ...] = (0.5, 0.85)  # chosen: edges over the place of the wall
-    in_wall: tuple[float, ...] = (0.125, 0.35)  # chosen: edges inside a wall, over its depth
+    in_wall: tuple[float, ...] = (0.125, 0.35)  # chosen: edges inside a wall, over its depth, ...
+    deep: float = 0.2  # chosen: ... if it is so many times as deep as its distance from the middle
     # chosen: position of the kink over the largest and over the finest element beside it, if g is
     # the penalty force
     beside_knot: tuple[float, float] = (2.0, 64.0)

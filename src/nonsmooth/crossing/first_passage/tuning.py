@@ -217,6 +217,19 @@ class PlaneGrids:
     """Grids of two state variables by their resolution."""
 
     driven: tuple[int, ...] = (3, 4, 5, 6, 7, 9, 11, 13)  # chosen: polynomial degrees
+    # chosen: the same if g depends on it, with the half axis over the finest element; in wide
+    # elements degrees from 8 on are unstable
+    observed: tuple[tuple[int, float], ...] = (
+        (4, 3.0),
+        (5, 3.0),
+        (6, 3.0),
+        (7, 3.0),
+        (7, 9.0),
+        (9, 9.0),
+        (11, 9.0),
+        (13, 9.0),
+    )
+    between: tuple[int, ...] = (7, 9, 11, 13, 15, 17, 19, 23)
     other: tuple[tuple[int, float, float], ...] = (
         (2, 8.0, 0.05),
         (3, 8.0, 0.03),
@@ -242,7 +255,16 @@ class PlaneGrids:
 
     def plane(self, driven: int, other: int) -> PlaneLevel:
         """Level of a tensor grid."""
-        return PlaneLevel(self.driven[driven], *self.other[other], self.dropped)
+        degree, ratio, finest = self.other[other]
+        return PlaneLevel(
+            self.driven[driven],
+            self.observed[driven],
+            degree,
+            self.between[other],
+            ratio,
+            finest,
+            self.dropped,
+        )
 
     def gibbs(self, driven: int, other: int) -> GibbsLevel:
         """Level of a grid in Hermite polynomials of the driven variable."""
@@ -301,6 +323,8 @@ BASES = (
 TIME_STEPPING = TimeStepping()
 STEPPED_GRIDS = PlaneGrids(
     driven=(4, 5, 6, 8, 9, 10, 12),
+    observed=((5, 3.0), (6, 3.0), (7, 3.0), (9, 3.0), (8, 9.0), (10, 9.0), (12, 9.0)),
+    between=(7, 9, 11, 13, 15, 17, 19),
     other=(
         (2, 3.0, 0.03),
         (3, 3.0, 0.02),
