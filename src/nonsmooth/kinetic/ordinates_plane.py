@@ -211,14 +211,16 @@ def _elements(scene, symbol, end, level, time):
         return symmetric(graded(end, finest, level.ratio), knot), degree
     wall = knot < end and scene.mechanics.argument == symbol and symbol.name == "x"
     edges = np.array([knot, end])
-    if wall and end - knot > settings.deep * knot:
-        edges = np.append(edges, knot + (end - knot) * np.array(settings.in_wall))
+    if wall:
+        edges = np.append(edges, knot + (end - knot) * settings.in_wall)
     if force:  # g = 0 up to the kink
         largest, finest = (knot / part for part in settings.beside_knot)
         return symmetric(edges, knot - graded(largest, finest, level.ratio)), level.other
     if wall and not observed:  # nothing happens between the walls
-        edges = symmetric(edges)
-        return edges, np.where(np.abs(edges[1:] + edges[:-1]) < 2 * knot, level.between, level.other)
+        degree, places = level.between
+        edges = symmetric(edges, knot * np.array(places))
+        inside = np.abs(edges[1:] + edges[:-1]) < 2 * knot
+        return edges, np.where(inside, degree, level.other)
     inner = knot if wall else end
     finest = max(level.finest * inner, 0.0 if wall else knot)
     return symmetric(edges, settings.outer * inner, graded(inner, finest, level.ratio)), level.other

@@ -61,9 +61,11 @@ class PlaneLevel(NamedTuple):
         Polynomial degree in the variable that noise drives, if g does not depend on it.
     observed : tuple of int and float
         The same if g does, and the half axis over the finest element.
-    other, between : int
-        Polynomial degree in the other variable, and between its middle and a wall, if nothing
-        happens there.
+    other : int
+        Polynomial degree in the other variable.
+    between : tuple of int and tuple of float
+        The same between its middle and a wall, if nothing happens there, and edges over the place
+        of the wall.
     ratio : float
         Ratio of the widths of neighbouring elements, where they are graded.
     finest : float
@@ -75,7 +77,7 @@ class PlaneLevel(NamedTuple):
     driven: int
     observed: tuple[int, float]
     other: int
-    between: int
+    between: tuple[int, tuple[float, ...]]
     ratio: float
     finest: float
     dropped: float
@@ -88,8 +90,7 @@ class PlaneOrdinates:
     depth: float = 14.0  # derived: outside the box the density is exp(-14) = 8e-7 of its maximum
     fast: float = 1.5  # chosen: largest of the finest elements if noise drives g, in sigma sqrt(t)
     outer: float = 0.4  # chosen: an edge in the outermost element, over the end of the axis
-    in_wall: tuple[float, ...] = (0.125, 0.35)  # chosen: edges inside a wall, over its depth, ...
-    deep: float = 0.2  # chosen: ... if it is so many times as deep as its distance from the middle
+    in_wall: float = 0.3  # chosen: an edge inside a wall, over its depth
     # chosen: position of the kink over the largest and over the finest element beside it, if g is
     # the penalty force
     beside_knot: tuple[float, float] = (2.0, 64.0)

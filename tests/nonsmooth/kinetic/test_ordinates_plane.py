@@ -22,6 +22,7 @@ class TestPlaneOrdinates:
 
     def test_no_node_is_its_own_mirror_image(self, scene):
         """The axes are symmetric, and one of them has no node at 0."""
-        made = axes(scene, boxed(scene), PlaneLevel(4, (4, 9.0), 3, 9, 8.0, 0.1, 1e-5), 1.0).values()
+        level = PlaneLevel(4, (4, 9.0), 3, (9, ()), 8.0, 0.1, 1e-5)
+        made = axes(scene, boxed(scene), level, 1.0).values()
         assert all(axis.nodes == pytest.approx(-axis.nodes[::-1]) for axis in made)
         assert np.prod([len(axis.nodes) for axis in made]) % 2 == 0
