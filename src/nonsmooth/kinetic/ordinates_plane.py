@@ -208,7 +208,7 @@ def _elements(scene, symbol, end, level, time):
             return symmetric(knot, end / 2, end), level.driven
         degree, coarsest = level.observed
         finest = min(end / coarsest, settings.fast * scene.noise.sigma * math.sqrt(time))
-        return symmetric(graded(end, finest, level.ratio), knot), degree
+        return symmetric(graded(end, finest, settings.ratio), knot), degree
     wall = knot < end and scene.mechanics.argument == symbol and symbol.name == "x"
     edges = np.array([knot, end])
     if wall:

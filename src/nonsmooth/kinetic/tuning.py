@@ -67,7 +67,7 @@ class PlaneLevel(NamedTuple):
         The same between its middle and a wall, if nothing happens there, and edges over the place
         of the wall.
     ratio : float
-        Ratio of the widths of neighbouring elements, where they are graded.
+        Ratio of the widths of neighbouring elements in the other variable, where they are graded.
     finest : float
         Width of the element next to g = 0, relative to the end of the axis.
     dropped : float
@@ -88,7 +88,8 @@ class PlaneOrdinates:
     """Tensor grids of two state variables."""
 
     depth: float = 14.0  # derived: outside the box the density is exp(-14) = 8e-7 of its maximum
-    fast: float = 1.5  # chosen: largest of the finest elements if noise drives g, in sigma sqrt(t)
+    fast: float = 1.5  # chosen: largest of the finest elements if noise drives g, in sigma sqrt(t),
+    ratio: float = 3.0  # chosen: ... and ratio of neighbouring ones
     outer: float = 0.4  # chosen: an edge in the outermost element, over the end of the axis
     in_wall: float = 0.3  # chosen: an edge inside a wall, over its depth
     # chosen: position of the kink over the largest and over the finest element beside it, if g is
