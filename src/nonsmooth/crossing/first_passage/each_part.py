@@ -5,7 +5,8 @@ the resolution is changed by itself. What the solution changes then is the error
 the error is the sum over all parts. It counts at least as much of the change before as is usual for
 the part: two resolutions may agree by chance. Where changes fall slowly, it counts all that would
 follow. Where the order of a method is known, its changes are extrapolated, and the error is what
-this changes from one resolution to the next. The parts with the largest errors are refined.
+this changes from one resolution to the next; at least a share of the last change, or of what this
+changed before, if that is known and less. The parts with the largest errors are refined.
 """
 
 from collections.abc import Callable
@@ -85,7 +86,7 @@ def _refined(parts, solution, met, tol):
     counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
     falls = np.array([part.falls for part in parts])[:, None, None]
     beyond = np.array([part.beyond for part in parts])[:, None, None]
-    before, found, changes, size = None, None, None, np.inf
+    before, found, changes, size, last = None, None, None, np.inf, np.inf
     settled = np.full(len(parts), False)
     while True:
         try:
@@ -110,7 +111,8 @@ def _refined(parts, solution, met, tol):
         extrapolated = (1 + beyond) * changes
         # what this adds to the change before, which is extrapolated, too
         further = extrapolated - beyond * before
-        floor = np.where(beyond > 0, falls * np.abs(changes), floor)
+        least = np.minimum(falls * np.abs(changes), settings.again * last)
+        floor = np.where(beyond > 0, least, floor)
         sizes = np.maximum(counted * np.abs(further), floor)
         errors = _tails(rates)[:, None, None] * sizes
         value = base + extrapolated[finer].sum(axis=0)
@@ -129,6 +131,7 @@ def _refined(parts, solution, met, tol):
             return found
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
         refined = chosen[:, None, None]
+        last = np.where(refined, np.abs(further), last)
         floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)
 
 

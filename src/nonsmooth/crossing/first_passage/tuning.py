@@ -162,6 +162,8 @@ class EachPart:
     # chosen: a change to a coarser resolution counts so much; that to a finer one is smaller
     coarser: float = 0.5
     enough: float = 0.8  # chosen: parts are refined until the error should be so much of tol
+    # chosen: what extrapolation changes counts as so much of what it changed before, at least
+    again: float = 0.5
     loose: float = 1e-3  # chosen: tolerance from which some parts begin coarser by one
     # chosen: changes up to so much of tol are left as they are; those of four parts may be met
     settled: float = 0.2

@@ -69,6 +69,21 @@ class TestRefineEachPart:
         if not irregular:
             assert abs(found.value[0, 0]) < 1e-15
 
+    def test_extrapolations_that_agree_twice_are_believed(self):
+        """At first a tenth of the last change counts, then half of what extrapolation changed."""
+
+        def solve(at):
+            solved.append(at[0])
+            return np.array([[0.25 ** at[0] + 0.01 * 0.125 ** at[0]], [0.0]])
+
+        part = Part(1, 9, 1, falls=0.1, beyond=1 / 3)
+        for tol, finest in ((2e-2, 2), (1e-3, 3)):
+            solved = []
+            found = refine_each_part((part,), solve, lambda found: found.change.max() <= tol, tol)
+            assert max(solved) == finest
+            assert abs(found.value[0, 0]) <= found.change.max() <= tol
+        assert 0.1 * 3 * 0.25**finest > tol, "a tenth of the last change would not do"
+
     def test_a_change_counts_a_tenth_of_the_one_before(self):
         """An error that changes its sign and seems to vanish is not taken to be zero."""
         values = [0.0, 1e-2, 1e-2, 1e-2]
