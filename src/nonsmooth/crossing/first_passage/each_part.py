@@ -6,7 +6,8 @@ the error is the sum over all parts. It counts at least as much of the change be
 the part: two resolutions may agree by chance. Where changes fall slowly, it counts all that would
 follow. Where the order of a method is known, its changes are extrapolated, and the error is what
 this changes from one resolution to the next; at least a share of the last change, or of what this
-changed before, if that is known and less. The parts with the largest errors are refined.
+changed before, if that is known and less. The parts with the largest errors are refined; those with
+small ones are measured again in the end, where the others are fine.
 """
 
 from collections.abc import Callable
@@ -117,18 +118,22 @@ def _refined(parts, solution, met, tol):
         errors = _tails(rates)[:, None, None] * sizes
         value = base + extrapolated[finer].sum(axis=0)
         coarser, found = found, Found(value, errors.sum(axis=0))
-        if met(found):
-            return found
-        size, larger = sizes.sum(axis=0).max(), size
-        if coarser is not None and not size < larger:
+        over, size, larger = met(found), sizes.sum(axis=0).max(), size
+        if not over and coarser is not None and not size < larger:
             return Found(coarser.value, coarser.change + np.abs(found.value - coarser.value))
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
-        # what hardly counts is neither refined nor measured again on the next grid
         worst = errors.max(axis=(1, 2))
-        settled = worst <= settings.settled * tol
-        chosen = _to_refine(np.where((left > 0) & ~settled, worst, 0.0), errors, falls, tol)
-        if not chosen.any() or _least(further, rates, falls, left) > settings.hopeless * tol:
-            return found
+        small = worst <= settings.settled * tol
+        chosen = _to_refine(np.where((left > 0) & ~small, worst, 0.0), errors, falls, tol)
+        hopeless = _least(further, rates, falls, left) > settings.hopeless * tol
+        if over or hopeless or not chosen.any():
+            if not settled.any():
+                return found
+            # what was small on a coarser grid may be larger where other parts are finer
+            settled, size = np.full(len(parts), False), np.inf
+            continue
+        # what hardly counts is neither refined nor measured again on the next grid
+        settled = small
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
         refined = chosen[:, None, None]
         last = np.where(refined, np.abs(further), last)
