@@ -74,16 +74,19 @@ class Axis:
         element = np.clip(np.searchsorted(self.edges, points, "right") - 1, 0, len(self.local) - 1)
         shared = self.curvature is not None  # neighbouring continuous elements share a node
         first = np.cumsum([0] + [len(local) - shared for local in self.local])
-        blocks = []
+        values, rows, columns = [np.empty(0)], [np.empty(0, int)], [np.empty(0, int)]
         for e in np.unique(element[inside]):
-            rows = np.flatnonzero(inside & (element == e))
+            here = np.flatnonzero(inside & (element == e))
             left, right = self.edges[e : e + 2]
-            values, _ = lagrange(self.local[e], (2 * points[rows] - left - right) / (right - left))
-            columns = first[e] + np.arange(len(self.local[e]))
-            blocks.append((values, *np.broadcast_arrays(rows[:, None], columns)))
-        parts = [np.concatenate([p.ravel() for p in part]) for part in zip(*blocks, strict=True)]
-        values, rows, columns = parts or ([], [], [])
-        return sp.csr_array((values, (rows, columns)), shape=(len(points), len(self.nodes)))
+            of_element, _ = lagrange(
+                self.local[e], (2 * points[here] - left - right) / (right - left)
+            )
+            nodes = first[e] + np.arange(len(self.local[e]))
+            values.append(of_element.ravel())
+            rows.append(np.repeat(here, len(nodes)))
+            columns.append(np.tile(nodes, len(here)))
+        entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+        return sp.csr_array(entries, shape=(len(points), len(self.nodes)))
 
 
 @lru_cache(maxsize=64)
