@@ -7,7 +7,7 @@ the part: two resolutions may agree by chance. Where changes fall slowly, it cou
 follow. Where the order of a method is known, its changes are extrapolated, and the error is what
 this changes from one resolution to the next; at least a share of the last change, or of what this
 changed before, if that is known and less. The parts with the largest errors are refined; those with
-small ones are measured again in the end, where the others are fine.
+small ones are measured again in the end if one is extrapolated: long steps hide what a grid misses.
 """
 
 from collections.abc import Callable
@@ -127,9 +127,9 @@ def _refined(parts, solution, met, tol):
         chosen = _to_refine(np.where((left > 0) & ~small, worst, 0.0), errors, falls, tol)
         hopeless = _least(further, rates, falls, left) > settings.hopeless * tol
         if over or hopeless or not chosen.any():
-            if not settled.any():
+            if not (settled.any() and beyond.any()):
                 return found
-            # what was small on a coarser grid may be larger where other parts are finer
+            # steps that are still long hide what a grid misses
             settled, size = np.full(len(parts), False), np.inf
             continue
         # what hardly counts is neither refined nor measured again on the next grid
