@@ -51,7 +51,7 @@ def coarse_ordinates(scene):
     ends = boxed(scene)
     if scene.model == "obstacle":
         return gibbs_ordinates(scene, ends, GibbsLevel(12, 5, (0.3, 1.0), (0.5, 1.0), 1e-5))
-    return plane_ordinates(scene, ends, PlaneLevel(4, (4, 9.0), 3, (9, ()), 8.0, 0.1, 1e-5), 1.0)
+    return plane_ordinates(scene, ends, PlaneLevel(4, (4, 9.0), (9, ()), 3, 8.0, 0.1, 1e-5), 1.0)
 
 
 class Repository:

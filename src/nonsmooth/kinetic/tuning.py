@@ -61,11 +61,11 @@ class PlaneLevel(NamedTuple):
         Polynomial degree in the variable that noise drives, if g does not depend on it.
     observed : tuple of int and float
         The same if g does, and the half axis over the finest element.
-    other : int
-        Polynomial degree in the other variable.
     between : tuple of int and tuple of float
-        The same between its middle and a wall, if nothing happens there, and edges over the place
-        of the wall.
+        Polynomial degree in the other variable between its middle and a wall, if nothing happens
+        there, and edges over the place of the wall.
+    other : int
+        Polynomial degree in the other variable elsewhere.
     ratio : float
         Ratio of the widths of neighbouring elements in the other variable, where they are graded.
     finest : float
@@ -76,8 +76,8 @@ class PlaneLevel(NamedTuple):
 
     driven: int
     observed: tuple[int, float]
-    other: int
     between: tuple[int, tuple[float, ...]]
+    other: int
     ratio: float
     finest: float
     dropped: float

@@ -24,7 +24,7 @@ class TestPlaneOrdinates:
 
     def test_no_node_is_its_own_mirror_image(self, scene):
         """The axes are symmetric, and one of them has no node at 0."""
-        level = PlaneLevel(4, (4, 9.0), 3, (9, ()), 8.0, 0.1, 1e-5)
+        level = PlaneLevel(4, (4, 9.0), (9, ()), 3, 8.0, 0.1, 1e-5)
         made = axes(scene, boxed(scene), level, 1.0).values()
         assert all(axis.nodes == pytest.approx(-axis.nodes[::-1]) for axis in made)
         assert np.prod([len(axis.nodes) for axis in made]) % 2 == 0
@@ -37,7 +37,7 @@ class TestElements:
     def test_between_walls_there_are_few(self, places, many):
         """Nodes from the middle to a wall belong to the elements of `between`, of its degree."""
         scene = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
-        level = PlaneLevel(4, (4, 9.0), 3, (9, places), 8.0, 0.1, 1e-5)
+        level = PlaneLevel(4, (4, 9.0), (9, places), 3, 8.0, 0.1, 1e-5)
         axis = axes(scene, boxed(scene), level, 1.0)[x]
         assert np.sum((axis.nodes > 0) & (axis.nodes < 1)) == many
         assert {*places, 1.0} < set(np.round(axis.edges, 12))

@@ -126,7 +126,7 @@ class TestReducedOrdinates:
         gap = []
         for theta in (10.0, 40.0):
             scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(theta, theta))
-            level_of_grid = PlaneLevel(5, (5, 9.0), 4, (11, ()), 8.0, 0.03, 1e-6)
+            level_of_grid = PlaneLevel(5, (5, 9.0), (11, ()), 4, 8.0, 0.03, 1e-6)
             grid = plane_ordinates(scene, boxed(scene), level_of_grid, 10.0)
             few = basis(grid, 2 * level, 1e-7, 0.02)
             gap.append(exact - passage(few, z, -level, level).real)

@@ -87,7 +87,8 @@ def _refined(parts, solution, met, tol):
     counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
     falls = np.array([part.falls for part in parts])[:, None, None]
     beyond = np.array([part.beyond for part in parts])[:, None, None]
-    before, found, changes, size, last = None, None, None, np.inf, np.inf
+    before, found, changes = None, None, None
+    size = further_before = np.inf
     settled = np.full(len(parts), False)
     while True:
         try:
@@ -112,7 +113,7 @@ def _refined(parts, solution, met, tol):
         extrapolated = (1 + beyond) * changes
         # what this adds to the change before, which is extrapolated, too
         further = extrapolated - beyond * before
-        least = np.minimum(falls * np.abs(changes), settings.again * last)
+        least = np.minimum(falls * np.abs(changes), settings.again * further_before)
         floor = np.where(beyond > 0, least, floor)
         sizes = np.maximum(counted * np.abs(further), floor)
         errors = _tails(rates)[:, None, None] * sizes
@@ -136,7 +137,7 @@ def _refined(parts, solution, met, tol):
         settled = small
         at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
         refined = chosen[:, None, None]
-        last = np.where(refined, np.abs(further), last)
+        further_before = np.where(refined, np.abs(further), further_before)
         floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)
 
 

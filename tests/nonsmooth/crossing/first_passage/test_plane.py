@@ -84,7 +84,7 @@ class TestCrossing:
         monkeypatch.setattr(plane, "fields", counted)
         times, rng = 100 * np.geomspace(0.1, 20, 40), np.random.default_rng(5)
         whole = asked(times, 3e-4)
-        for _ in range(2):
+        for _ in range(4):
             some = np.sort(rng.choice(times, rng.integers(1, 6), replace=False))
             assert asked(some, 3e-4) <= 1.2 * whole
         assert asked(times, 2e-3) <= 1.2 * whole

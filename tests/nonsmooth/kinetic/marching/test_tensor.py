@@ -15,7 +15,7 @@ from nonsmooth.kinetic.ordinates_plane import axes, boxed
 from nonsmooth.kinetic.tuning import PlaneLevel
 from references import COLORED_FRICTION, PLASTIC_STRAIN
 
-LEVEL = PlaneLevel(3, (3, 9.0), 2, (7, ()), 8.0, 0.2, 0.0)
+LEVEL = PlaneLevel(3, (3, 9.0), (7, ()), 2, 8.0, 0.2, 0.0)
 
 
 def interval(edges, symmetric=False):
