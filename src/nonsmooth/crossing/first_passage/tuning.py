@@ -260,8 +260,13 @@ class PlaneGrids:
 
     def plane(self, driven: int, other: int) -> PlaneLevel:
         """Level of a tensor grid."""
-        of_driven = self.driven[driven], self.observed[driven]
-        return PlaneLevel(*of_driven, self.between[other], *self.other[other], self.dropped)
+        return PlaneLevel(
+            self.driven[driven],
+            self.observed[driven],
+            self.between[other],
+            *self.other[other],
+            self.dropped,
+        )
 
     def gibbs(self, driven: int, other: int) -> GibbsLevel:
         """Level of a grid in Hermite polynomials of the driven variable."""
