@@ -58,20 +58,29 @@ def test_adjoint_and_differences(scene, levels, parameter):
 
 
 @pytest.mark.slow
-def test_fronts_are_left_to_differences():
+def test_fronts_are_left_to_differences(monkeypatch):
     """With g = sign(y) but for a small part, paths that never turn arrive together.
 
     The adjoint equation misses the tolerance, and differences answer, which agree with those of a
     finer tolerance.
     """
-    scene = ns.Scene("friction", n=1000, observable="friction_force")
-    question = Question(scene, -0.6, 0.6, HORIZONS, 10.0)
-    with pytest.raises(ToleranceError) as refused:
-        first_passage.logarithmic_derivative(question, "p", 1e-4)
-    fine, bound = differences.logarithmic_derivative(question, "p", 1e-5)
-    value, error = refused.value.result
-    assert np.all(np.abs(value - fine) <= error + bound)
+    scene, refusals = ns.Scene("friction", n=1000, observable="friction_force"), []
+    adjoint = first_passage.logarithmic_derivative
+
+    def noted(*question):
+        try:
+            return adjoint(*question)
+        except ToleranceError as refused:
+            refusals.append(refused)
+            raise
+
+    monkeypatch.setattr(first_passage, "logarithmic_derivative", noted)
     run = ns.crossing_sensitivity(scene, 0.6, HORIZONS, "p", p=10.0, tol=1e-4)
+    (refused,) = refusals
+    question = Question(scene, -0.6, 0.6, HORIZONS, 10.0)
+    fine, bound = differences.logarithmic_derivative(question, "p", 2e-5)
+    value, error = refused.result
+    assert np.all(np.abs(value - fine) <= error + bound)
     assert np.all(np.abs(10.0 * run["derivative"] - fine) <= 10.0 * run["derivative_error"] + bound)
 
 

@@ -13,7 +13,7 @@ from nonsmooth.crossing.first_passage import plane, tuning
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.inversion import Solver, contour_solver, contour_solvers
 from nonsmooth.crossing.first_passage.line import Intervals, LineProblemFromAfar
-from nonsmooth.crossing.first_passage.plane import PlaneProblem, SharedGrids, inverted
+from nonsmooth.crossing.first_passage.plane import PlaneProblem, SharedGrids, inverted, tame
 from nonsmooth.crossing.first_passage.problem import (
     DirectProblem,
     FirstPassageProblem,
@@ -131,11 +131,11 @@ def _shared_grids(scene, intervals, times):
 
 
 def _one_in_plane(scene, lower, upper, times, tol, grids):
-    """Solve for two state variables: early times by steps, later ones by contours.
+    """Solve for two state variables: some early times by steps, the others by contours.
 
-    Contours grow accurate with time, steps become many. In between, steps are tried where contours
-    miss the tolerance, and contours once more for the times that are left. `grids` makes those for
-    some of the times, which other intervals may have made before.
+    Contours are better once they may bend, unless the interval is narrow. Where they miss the
+    tolerance, steps are tried, and contours once more for the times that are left. `grids` makes
+    those for some of the times, which other intervals may have made before.
     """
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
     reasons = ["the solution is not finite"]
@@ -156,7 +156,11 @@ def _one_in_plane(scene, lower, upper, times, tol, grids):
         solution[:, chosen], error[:, chosen] = found[:, better], stated[:, better]
 
     settings, relaxations = tuning.TIME_STEPPING, times * scene.damping
-    early, late = relaxations <= settings.until, relaxations > settings.latest
+    late, whole = relaxations > settings.latest, grids(tuple(times))
+    narrow = upper - lower < settings.narrow * whole.way
+    early = relaxations <= settings.until
+    if early.any() and not narrow:
+        early &= ~tame(PlaneProblem(scene, lower, upper, times, whole), times)
     solve(early, tuning.STEPPED_PARTS, stepped)
     by_slabs = np.isinf(error[0])  # they are stable on more grids than steps
     solve(by_slabs, tuning.PLANE_PARTS, inverted)

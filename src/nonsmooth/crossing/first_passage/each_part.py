@@ -84,7 +84,7 @@ def _refined(parts, solution, met, tol):
     at = begun
     # the changes of finer parts are added: what remains is the change of their changes
     finer = np.array([part.step > 0 for part in parts])
-    counted = np.where(finer, 1.0, settings.coarser)[:, None, None]
+    counted = np.array([part.counted for part in parts])[:, None, None]
     falls = np.array([part.falls for part in parts])[:, None, None]
     beyond = np.array([part.beyond for part in parts])[:, None, None]
     before, found, changes = None, None, None

@@ -11,12 +11,18 @@ from nonsmooth.crossing.first_passage.problem import (
     ContourSettings,
     LaplaceProblem,
 )
+from nonsmooth.crossing.first_passage.saddle_points import saddle_points
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.adding_doubling import fields
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
-from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
+from nonsmooth.kinetic.ordinates_plane import (
+    PlaneOrdinates,
+    UnstableError,
+    boxed,
+    plane_ordinates,
+)
 from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates, reduced
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
@@ -188,7 +194,7 @@ class SharedGrids:
         parts = 1
         while math.log10(ends[1] / ends[0]) > settings.widest * parts:
             parts *= 2
-        return np.geomspace(*ends, parts * 2**refined + 1)
+        return np.geomspace(*ends, settings.parts * parts * 2**refined + 1)
 
 
 class PlaneProblem(LaplaceProblem):
@@ -317,3 +323,27 @@ def inverted(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.n
         return solve(level, nothing, every)[0]
 
     return solved
+
+
+def tame(problem: PlaneProblem, times: np.ndarray) -> np.ndarray:
+    """Whether contours may bend to the left, from some time on, and have been so for a while.
+
+    Where they may not, F has fronts, and small errors of a grid are large ones of a contour.
+
+    Parameters
+    ----------
+    problem : PlaneProblem
+    times : numpy.ndarray, shape (k,)
+        Increasing, positive.
+
+    Returns
+    -------
+    numpy.ndarray of bool, shape (k,)
+        False where the coarsest grid does not tell.
+    """
+    settings = tuning.SADDLE_POINTS
+    try:
+        bends = saddle_points(problem, times / settings.since).tilt > settings.steepest
+    except (ToleranceError, UnstableError):
+        return np.full(len(times), False)
+    return np.logical_and.accumulate(bends[::-1])[::-1]

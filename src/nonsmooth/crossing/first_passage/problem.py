@@ -88,6 +88,8 @@ class Part:
     beyond : float
         Over a change to the next finer resolution, the sum of all that would follow, if this is
         known: such changes are extrapolated. 1/3 for a method of order 2 and halved steps.
+    counted : float
+        Share of a change that is its error: less than 1 if those that would follow are far smaller.
     """
 
     first: int
@@ -96,6 +98,7 @@ class Part:
     falls: float = 0.1
     coarser: bool = False
     beyond: float = 0.0
+    counted: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,8 @@ class SaddlePoints:
     inexact: float = 0.05  # chosen: so far outside of [0, 1] is no value of F on a coarse grid
     angles: tuple[float, ...] = (0.2, 0.4, 0.67)  # chosen: at which the growth of |F| is measured
     steepest: float = 0.0  # chosen: angle of a contour if |F| grows too much at all of them
+    since: float = 2.0  # chosen: a time over the first at which a contour has a larger angle, from
+    #                     which on two variables are as accurate as later
     tamed: float = 0.3  # chosen: largest growth over fall on a contour through the saddle point
     tame: float = 0.08  # chosen: largest growth over fall on a hyperbola
     harmless: float = 0.7  # chosen: growth of log |F| that is ignored; poles near the axis cause it
@@ -159,8 +161,6 @@ class FarStart:
 class EachPart:
     """Refinement of one part of a resolution at a time."""
 
-    # chosen: a change to a coarser resolution counts so much; that to a finer one is smaller
-    coarser: float = 0.5
     enough: float = 0.8  # chosen: parts are refined until the error should be so much of tol
     # chosen: what extrapolation changes counts as so much of what it changed before, at least
     again: float = 0.5
@@ -178,17 +178,18 @@ class EachPart:
 class Slabs:
     """Slabs of two state variables, at real z, from which the basis is taken."""
 
-    least: float = 0.3  # chosen: least z times the last time, ...
+    least: float = 3.0  # chosen: least z times the last time, ...
     largest: float = 10.0  # chosen: ... and largest z times the first time
     shortest: float = 1e-6  # chosen: least mean duration in relaxation times, above rounding
     exponents: tuple[float, ...] = (0.5, 1.0, 2.0)  # chosen: z t at which W is bounded ...
     coarse: float = 1e-6  # chosen: ... with F on a coarse grid, whose error is far below this
-    widest: float = 4.0  # chosen: largest distance of these z in decades, for the first basis
+    widest: float = 4.0  # chosen: decades of these z that have one part, ...
+    parts: int = 3  # chosen: ... which is divided into so many for the first basis
     similar: float = 8.0  # chosen: longest over shortest of the intervals that share a basis
 
 
 class Basis(NamedTuple):
-    """How a grid is reduced; each has solutions at twice as many real z as the one before.
+    """How a grid is reduced: the real z of each are half as far apart as those of the one before.
 
     Attributes
     ----------
@@ -279,6 +280,8 @@ class TimeStepping:
 
     until: float = 10.0  # chosen: last time, in relaxation times; later the transform is tame
     latest: float = 40.0  # chosen: last time where contours miss the tolerance
+    narrow: float = 3.0  # chosen: an interval's length, in ways that int g goes in a relaxation
+    #                      time, up to which steps are faster than contours
     ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x
     # chosen: polynomial degree in x; the smallest element over the lesser of the distance to the
     # threshold and of the way that int g goes in a relaxation time; the largest over the distance
@@ -315,11 +318,11 @@ SLABS = Slabs()
 EACH_PART = EachPart()
 NEAR_WALL = NearWall()
 PLANE_GRIDS = PlaneGrids()
+# a basis has the solutions of the one before if its first slabs are as thin
 BASES = (
-    Basis(3e-7, 0.04),
+    Basis(1e-7, 0.02),
     Basis(1e-8, 0.02),
-    Basis(3e-9, 0.01),
-    Basis(1e-9, 0.005),
+    Basis(1e-9, 0.01),
     Basis(1e-9, 0.005),
 )
 TIME_STEPPING = TimeStepping()
@@ -349,8 +352,15 @@ STEPPED_PARTS = (
     Part(1, 4, 1, 0.1),
     Part(1, 5, 1, 0.1, beyond=1 / 3),
 )
-# driven and other variable of the grid, basis, contour
-PLANE_PARTS = (Part(2, 6, 1, 0.05, True), Part(2, 6, 1, 0.3, True), Part(1, 4, -1), Part(1, 4, -1))
+# driven and other variable of the grid, basis, contour. Changes by the last two fall fast: to a
+# twentieth and to an eighth were seen of those by the basis, so that half of one is more than what
+# is left
+PLANE_PARTS = (
+    Part(2, 6, 1, 0.05, True),
+    Part(2, 6, 1, 0.3, True),
+    Part(0, 2, 1, 0.3, counted=0.5),
+    Part(1, 4, -1, counted=0.5),
+)
 
 # The numbers of these records are described at `Settings` and `ContourSettings`. All without a
 # comment are chosen by trial; benchmarks/crossing_honesty.py checks the errors that result.

@@ -7,9 +7,10 @@ from scipy.special import ndtr
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import distribution
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
+from nonsmooth.crossing.first_passage.time_stepping import stepped
 from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.kinetic.ordinates_plane import UnstableError
-from references import COLORED_FRICTION, far
+from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN, far
 
 
 def deterministic(scene, threshold, horizons, tol=1e-7):
@@ -74,6 +75,35 @@ def test_refused_where_g_changes_its_sign():
     """A start where g changes its sign on the way to the bulk is told to sample."""
     with pytest.raises(ns.NonsmoothError, match="monte_carlo"):
         deterministic(far(8.0, observable="y*(y**2 - 49)"), 0.6, [1.0])
+
+
+class TestEarlyTimes:
+    """Steps in time serve narrow intervals, and times at which contours are not tame."""
+
+    @pytest.fixture
+    def stepped_at(self, monkeypatch):
+        """Return a list of the times that steps were asked for."""
+        asked = []
+
+        def noted(problem, times):
+            asked.extend(times)
+            return stepped(problem, times)
+
+        monkeypatch.setattr(distribution, "stepped", noted)
+        return asked
+
+    def test_wide_intervals_need_none(self, stepped_at):
+        """Slow crossings of a wide interval have a tame transform from the first times on."""
+        times = np.array([6.0, 9.0])
+        found = deterministic_crossing(OBSTACLE, np.array([[-3.0, 3.0]]), times, 1e-2)
+        assert not stepped_at
+        assert np.all(found["probability_error"] <= 1e-2)
+
+    def test_narrow_ones_are_marched(self, stepped_at):
+        """Within a relaxation time int g leaves an interval that is a part of its way."""
+        times = np.array([1.0, 2.0])
+        deterministic_crossing(PLASTIC_STRAIN, np.array([[-0.2, 0.2]]), times, 1e-2)
+        assert stepped_at == [*times]
 
 
 class TestWhereSlabsFail:

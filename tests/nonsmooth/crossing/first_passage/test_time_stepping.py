@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted
+from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted, tame
 from nonsmooth.crossing.first_passage.time_stepping import stepped
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 
@@ -49,3 +49,19 @@ def test_crossings_too_rare_are_none():
     times = np.array([1.0, 2.0])
     problem = PlaneProblem(COLORED_FRICTION, -8.0, 8.0, times)
     assert np.all(stepped(problem, times)((0, 0, 0, 0)) == [[0.0, 0.0], [1.0, 1.0]])
+
+
+@pytest.mark.slow
+def test_contours_are_accurate_once_they_are_tame():
+    """Steps agree with them from then on, to what coarse grids reach; before, they need not.
+
+    Twice the time is tame, too: with time, transforms only get tamer.
+    """
+    times = np.array([0.5, 1.0, 2.0, 4.0, 8.0])
+    problem = PlaneProblem(COLORED_FRICTION, -0.6, 0.6, times)
+    bend = tame(problem, times)
+    assert bend[-1] and not bend[0] and np.all(np.diff(bend.astype(int)) >= 0)
+    late = times[bend]
+    problem = PlaneProblem(COLORED_FRICTION, -0.6, 0.6, late)
+    marched, transformed = stepped(problem, late)((2, 2, 1, 2)), inverted(problem, late)((2, 2, 0, 1))
+    assert np.max(np.abs(marched - transformed)) < TOLERANCE
