@@ -121,7 +121,7 @@ def _in_plane(scene, lower, upper, tol):
         return found.change[0, 0] + abs(found.value[1, 0]) + seen / mean
 
     found = refine_each_part(
-        passage_tuning.PLANE_PARTS[:3],
+        problem.resolutions[:3],
         solve,
         lambda found: stated(found) <= tol * found.value[0, 0],
         tol,

@@ -140,12 +140,13 @@ def _one_in_plane(scene, lower, upper, times, tol, grids):
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
     reasons = ["the solution is not finite"]
 
-    def solve(here, parts, solver):
+    def solve(here, solver):
         """Solve at some of the times; keep what has a smaller error than what is known."""
         if not here.any():
             return
         shared = grids(tuple(times[here]))
         problem = PlaneProblem(scene, lower, upper, times[here], shared)
+        parts = tuning.STEPPED_PARTS if solver is stepped else problem.resolutions
         try:
             found, stated = _part_by_part(problem, times[here], parts, solver, tol)
         except UnstableError as unstable:
@@ -161,14 +162,14 @@ def _one_in_plane(scene, lower, upper, times, tol, grids):
     early = relaxations <= settings.until
     if early.any() and not narrow:
         early &= ~tame(PlaneProblem(scene, lower, upper, times, whole), times)
-    solve(early, tuning.STEPPED_PARTS, stepped)
+    solve(early, stepped)
     by_slabs = np.isinf(error[0])  # they are stable on more grids than steps
-    solve(by_slabs, tuning.PLANE_PARTS, inverted)
+    solve(by_slabs, inverted)
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
-        solve(missed & ~late, tuning.STEPPED_PARTS, stepped)
+        solve(missed & ~late, stepped)
         if np.sum(missed & late) < np.sum(by_slabs):  # without the times that are worst
-            solve(missed & late, tuning.PLANE_PARTS, inverted)
+            solve(missed & late, inverted)
     if np.isinf(error).any():
         raise ToleranceError(f"{reasons[-1]}; use method='monte_carlo'")
     return _answer(PlaneProblem(scene, lower, upper, times), times, solution, error, tol)

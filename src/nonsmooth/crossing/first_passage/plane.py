@@ -10,6 +10,7 @@ from nonsmooth.crossing.first_passage.inversion import contour_solver
 from nonsmooth.crossing.first_passage.problem import (
     ContourSettings,
     LaplaceProblem,
+    Part,
 )
 from nonsmooth.crossing.first_passage.saddle_points import saddle_points
 from nonsmooth.errors import ToleranceError
@@ -234,6 +235,17 @@ class PlaneProblem(LaplaceProblem):
     def settings(self) -> ContourSettings:
         """How accurate the problem is."""
         return tuning.PLANE
+
+    @property
+    def resolutions(self) -> tuple[Part, ...]:
+        """Those of the grid in both variables, of the basis, and of a contour."""
+        driven = self.scene.noise.driven
+        (other,) = set(self.grids.ends) - {driven}
+        # of oscillations: the widths of the box are so many standard deviations
+        rate = self.grids.ends[driven] / self.grids.ends[other]
+        hardly_damped = self.scene.damping < tuning.HARDLY_DAMPED * rate
+        slow = hardly_damped and ordinates_gibbs.applies(self.scene)
+        return tuning.SLOW_PARTS if slow else tuning.PLANE_PARTS
 
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
         """Return F on the coarsest grid; see `LaplaceProblem`."""

@@ -361,6 +361,10 @@ PLANE_PARTS = (
     Part(0, 2, 1, 0.3, counted=0.5),
     Part(1, 4, -1, counted=0.5),
 )
+# Hermite polynomials and their elements converge slowly, and irregularly, if the damping is less
+# than this share of the rate of oscillations
+HARDLY_DAMPED = 0.2  # chosen
+SLOW_PARTS = (Part(2, 6, 1, 0.5, True), Part(2, 6, 1, 0.5, True), *PLANE_PARTS[2:])
 
 # The numbers of these records are described at `Settings` and `ContourSettings`. All without a
 # comment are chosen by trial; benchmarks/crossing_honesty.py checks the errors that result.

@@ -65,6 +65,18 @@ class TestCrossing:
         for value, error in ((late, late_error), (early, early_error)):
             assert abs(value - 0.69682) <= error + 3e-4
 
+    def test_hardly_damped_obstacles(self):
+        """Two levels agreed to 4e-4 on what is 8e-4 off.
+
+        Steps in time with up to 54 Hermite polynomials give 0.90274, settled to 4e-5.
+        """
+        scene = ns.Scene(
+            "obstacle", ns.White(0.725), damping=0.3166, n=176.0, potential="x**2/2", observable="x"
+        )
+        levels, times = np.array([[-3.852, 2.1645]]), np.array([92.62])
+        found = deterministic_crossing(scene, levels, times, 1e-3)
+        assert abs(found["probability"][0, 0] - 0.9027) <= found["probability_error"][0, 0] + 2e-4
+
     def test_asking_for_less_costs_no_more(self, monkeypatch):
         """Fewer times, or a larger tolerance, take at most 1.2 times the work.
 
@@ -83,11 +95,11 @@ class TestCrossing:
 
         monkeypatch.setattr(plane, "fields", counted)
         times, rng = 100 * np.geomspace(0.1, 20, 40), np.random.default_rng(5)
-        whole = asked(times, 3e-4)
-        for _ in range(4):
+        whole = asked(times, 8e-4)
+        for _ in range(2):
             some = np.sort(rng.choice(times, rng.integers(1, 6), replace=False))
-            assert asked(some, 3e-4) <= 1.2 * whole
-        assert asked(times, 2e-3) <= 1.2 * whole
+            assert asked(some, 8e-4) <= 1.2 * whole
+        assert asked(times, 4e-3) <= 1.2 * whole
 
 
 @pytest.mark.parametrize("scene", [COLORED_FRICTION, OBSTACLE.with_n(5)])
