@@ -338,9 +338,10 @@ def inverted(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.n
 
 
 def tame(problem: PlaneProblem, times: np.ndarray) -> np.ndarray:
-    """Whether contours may bend to the left, from some time on, and have been so for a while.
+    """Whether contours may bend to the left, from some time on, and crossings are no longer rare.
 
-    Where they may not, F has fronts, and small errors of a grid are large ones of a contour.
+    Where they may not, F has fronts, and small errors of a grid are large ones of a contour; paths
+    that cross while this is rare fly there directly, which is such a front.
 
     Parameters
     ----------
@@ -354,8 +355,12 @@ def tame(problem: PlaneProblem, times: np.ndarray) -> np.ndarray:
         False where the coarsest grid does not tell.
     """
     settings = tuning.SADDLE_POINTS
+    before = times / settings.since
+    seen = np.union1d(before, times)
     try:
-        bends = saddle_points(problem, times / settings.since).tilt > settings.steepest
+        saddles = saddle_points(problem, seen)
     except (ToleranceError, UnstableError):
         return np.full(len(times), False)
-    return np.logical_and.accumulate(bends[::-1])[::-1]
+    bends = saddles.tilt[np.searchsorted(seen, before)] > settings.steepest
+    risen = saddles.bound[np.searchsorted(seen, times)] >= np.log(settings.risen)
+    return np.logical_and.accumulate((bends & risen)[::-1])[::-1]

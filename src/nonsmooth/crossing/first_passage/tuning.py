@@ -33,7 +33,7 @@ class SaddlePoints:
     inexact: float = 0.05  # chosen: so far outside of [0, 1] is no value of F on a coarse grid
     angles: tuple[float, ...] = (0.2, 0.4, 0.67)  # chosen: at which the growth of |F| is measured
     steepest: float = 0.0  # chosen: angle of a contour if |F| grows too much at all of them
-    since: float = 2.0  # chosen: a time over the first at which a contour has a larger angle, from
+    since: float = 2.0  # chosen: a time over that at which a contour has a larger angle, from
     #                     which on two variables are as accurate as later
     tamed: float = 0.3  # chosen: largest growth over fall on a contour through the saddle point
     tame: float = 0.08  # chosen: largest growth over fall on a hyperbola
