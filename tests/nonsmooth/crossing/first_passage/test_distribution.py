@@ -77,6 +77,7 @@ def test_refused_where_g_changes_its_sign():
         deterministic(far(8.0, observable="y*(y**2 - 49)"), 0.6, [1.0])
 
 
+@pytest.mark.slow
 class TestEarlyTimes:
     """Steps in time serve narrow intervals, and times at which contours are not tame."""
 
