@@ -140,13 +140,12 @@ def _one_in_plane(scene, lower, upper, times, tol, grids):
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
     reasons = ["the solution is not finite"]
 
-    def solve(here, solver):
+    def solve(here, parts, solver):
         """Solve at some of the times; keep what has a smaller error than what is known."""
         if not here.any():
             return
         shared = grids(tuple(times[here]))
         problem = PlaneProblem(scene, lower, upper, times[here], shared)
-        parts = tuning.STEPPED_PARTS if solver is stepped else problem.resolutions
         try:
             found, stated = _part_by_part(problem, times[here], parts, solver, tol)
         except UnstableError as unstable:
@@ -157,22 +156,21 @@ def _one_in_plane(scene, lower, upper, times, tol, grids):
         solution[:, chosen], error[:, chosen] = found[:, better], stated[:, better]
 
     settings, relaxations = tuning.TIME_STEPPING, times * scene.damping
-    late, whole = relaxations > settings.latest, grids(tuple(times))
-    narrow = upper - lower < settings.narrow * whole.way
-    early = relaxations <= settings.until
-    if early.any() and not narrow:
-        early &= ~tame(PlaneProblem(scene, lower, upper, times, whole), times)
-    solve(early, stepped)
+    early, late = relaxations <= settings.until, relaxations > settings.latest
+    whole = PlaneProblem(scene, lower, upper, times, grids(tuple(times)))
+    if early.any() and upper - lower >= settings.narrow * whole.grids.way:
+        early &= ~tame(whole, times)
+    solve(early, tuning.STEPPED_PARTS, stepped)
     by_slabs = np.isinf(error[0])  # they are stable on more grids than steps
-    solve(by_slabs, inverted)
+    solve(by_slabs, whole.resolutions, inverted)
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
-        solve(missed & ~late, stepped)
+        solve(missed & ~late, tuning.STEPPED_PARTS, stepped)
         if np.sum(missed & late) < np.sum(by_slabs):  # without the times that are worst
-            solve(missed & late, inverted)
+            solve(missed & late, whole.resolutions, inverted)
     if np.isinf(error).any():
         raise ToleranceError(f"{reasons[-1]}; use method='monte_carlo'")
-    return _answer(PlaneProblem(scene, lower, upper, times), times, solution, error, tol)
+    return _answer(whole, times, solution, error, tol)
 
 
 def _part_by_part(problem, times, parts, solver, tol):
