@@ -18,6 +18,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid, direct_solver
+from nonsmooth.linear_algebra.sylvester import sylvester
 from nonsmooth.scenes.scene import Scene
 
 
@@ -196,6 +197,6 @@ def _integrals(layer, adjoint, masses):
     # of E[d d*] = w'^T E^T E* w*' - w^T O^T O* w*; Z is the integral of both if w(0) = R
     odd = layer.root.T @ (layer.odd.T @ adjoint.odd) @ adjoint.root
     overlap = layer.root.T @ (layer.even.T @ adjoint.even - odd) @ adjoint.root
-    overlap = scipy.linalg.solve_sylvester(layer.root.T, adjoint.root, overlap)
+    overlap = sylvester(layer.root.T, adjoint.root, overlap)
     products = layer.strengths @ overlap @ adjoint.strengths
     return dipole, square * kappa - kappa**3 / 3 + moments + crossed + products

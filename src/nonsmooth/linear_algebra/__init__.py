@@ -2,4 +2,6 @@
 
 `dense`
     Factorisations, eigenproblems and exponentials of dense matrices, during which Ctrl-C is heard.
+`sylvester`
+    Sylvester's equation, by matrix products.
 """

@@ -39,8 +39,8 @@ def logarithmic_derivative(
     for step in tuning.DIFFERENCES.steps:
         accuracy = tol * step * tuning.DIFFERENCES.share
         changed = [question.changed(parameter, k * step) for k in (-1, -2, -3, 1, 2, 3)]
-        # thresholds of one scene are solved together
-        groups = [changed] if parameter == "threshold" else [[one] for one in changed]
+        # levels of one scene are solved together
+        groups = [changed] if parameter in ("threshold", "p") else [[one] for one in changed]
         solved = [_solved(group, accuracy) for group in groups]
         W, inexact = (np.concatenate(parts) for parts in zip(*solved, strict=True))
         value, error = central(W[:3], W[3:], inexact[:3] + inexact[3:], step)
@@ -50,12 +50,15 @@ def logarithmic_derivative(
 
 
 def _solved(questions, tol):
-    """Probabilities and errors of questions that differ in their thresholds alone."""
+    """Probabilities and errors of questions of one scene."""
     levels = np.array([question.levels for question in questions])
+    times = np.unique([question.times for question in questions])
     try:
-        found = deterministic_crossing(questions[0].scene, levels, questions[0].times, tol)
+        found = deterministic_crossing(questions[0].scene, levels, times, tol)
     except ToleranceError as refused:  # its error is part of that of the derivative
         if refused.result is None:
             raise
         found = refused.result
-    return found["probability"], found["probability_error"]
+    own = np.array([np.searchsorted(times, question.times) for question in questions])
+    probability, error = (found[name] for name in ("probability", "probability_error"))
+    return np.take_along_axis(probability, own, 1), np.take_along_axis(error, own, 1)

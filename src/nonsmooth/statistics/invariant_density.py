@@ -40,7 +40,8 @@ def invariant_density(
     Parameters
     ----------
     scene : Scene
-        With a finite n: at n = inf mass concentrates on sets of measure zero.
+        With a finite n, unless there is a closed form: at n = inf mass concentrates on sets of
+        measure zero else.
     tol : float, optional
         Error allowed, relative to the largest value of each density. Unless given, it is 1e-8,
         1e-6, 1e-2 or 5e-2 for one to four variables, and what misses that is returned with a
@@ -61,12 +62,11 @@ def invariant_density(
     Raises
     ------
     SceneError
-        If an argument is out of range, or n is infinite.
+        If an argument is out of range, or there is no density at n = inf.
     ToleranceError
         If `tol` cannot be met; the best densities are its `result`.
     """
     require_random(scene)
-    _require_finite(scene)
     tol_given = tol is not None
     tol = None if tol is None else require_tolerance(tol)
     points = None if points is None else _require_points(scene, points)
@@ -77,6 +77,7 @@ def invariant_density(
             points = _equidistant(half_widths(scene, tensor_grid.depth_for(tol)))
         found, error = _of_closed_form(closed, points)
         return _dataset(found, error, points)
+    _require_finite(scene)
     grid = _first_grid(scene, tol)
     if points is None:
         points = _equidistant(grid.ends)
@@ -228,22 +229,27 @@ def closed_form(scene: Scene) -> dict[str, Callable]:
     dict
         Name -> function of points that returns values and errors. A velocity alone with white
         noise has a density by quadrature; obstacles with white noise have the Gibbs measure
-        exp(-2 C_b/sigma^2 (y^2/2 + U_n(x))). The dict is empty for all other scenes.
+        exp(-2 C_b/sigma^2 (y^2/2 + U_n(x))), at n = inf between the walls. The dict is empty for
+        all other scenes.
     """
     if scene.is_line:
         return {"y": lambda y: quadrature.density(scene, y)}
     if scene.noise.kind != "white" or not scene.mechanics.in_potential:
         return {}
     inverse = 2 * scene.damping / scene.noise.sigma**2
-    U = scene.potential_expression + scene.mechanics.added_potential
-    energy = vectorised(U.subs(penalization, scene.n), (STATE_VARIABLES[-1],))
+    U, rigid = scene.potential_expression, math.isinf(scene.n)
+    if not rigid:
+        U += scene.mechanics.added_potential.subs(penalization, scene.n)
+    energy = vectorised(U, (STATE_VARIABLES[-1],))
     end = half_widths(scene, tuning.INVARIANT_DENSITY.deepest)[STATE_VARIABLES[-1]]
     lowest = float(np.min(energy(np.linspace(-end, end, 2001))))
     wall, _, _ = scene.mechanics.penalty.at(scene.n)
-    pieces = [-end, -wall, 0.0, wall, end]
+    pieces = np.unique([-end, -wall, 0.0, wall, end])
 
     def shape(x):
-        return np.exp(-inverse * (energy(np.asarray(x, dtype=float)) - lowest))
+        x = np.asarray(x, dtype=float)
+        held = np.exp(-inverse * (energy(x) - lowest))
+        return np.where(np.abs(x) > wall, 0.0, held) if rigid else held
 
     # with its full output it does not warn of an error that is returned anyway
     parts = [
@@ -275,7 +281,7 @@ def bin_averages(
     Parameters
     ----------
     scene : Scene
-        With a finite n.
+        As for `invariant_density`.
     edges : dict
         Maps names of variables to the edges of their bins.
     tol : float
@@ -291,13 +297,13 @@ def bin_averages(
     Raises
     ------
     SceneError
-        If n is infinite.
+        If there is no density at n = inf.
     ToleranceError
         If `tol` cannot be met.
     """
-    _require_finite(scene)
     if closed := closed_form(scene):
         return _averages_of_closed_form(scene, closed, edges)
+    _require_finite(scene)
     grid = _first_grid(scene, tol)
     accuracy = tol * tuning.INVARIANT_DENSITY.residual
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from reproduction.agreement import standard_errors
 from reproduction.errors import ArtifactError
 from reproduction.published.record import Number, Record
-from reproduction.rendering.quoted import ERROR, INTERVAL, STANDARD
+from reproduction.rendering.quoted import EFFECTIVE, ERROR, INTERVAL, STANDARD
 
 MAGNITUDE = 10.0  # an error is stated by its order of magnitude
 HALF_INTERVAL = 1.96  # standard errors
@@ -104,7 +104,7 @@ def state(published: Number | str | None, found: Number | str | None, z: float) 
     str
         `IDENTICAL`, `WITHIN` or `OFF`. Without an error, only what is equal is not off. Bounds and
         roundings add up; standard errors add up in squares. An error of more than `MAGNITUDE` times
-        the published one is off, too.
+        the published one is off, too, and an effective size of less than a part of it.
     """
     if published == found:
         return IDENTICAL
@@ -114,6 +114,8 @@ def state(published: Number | str | None, found: Number | str | None, z: float) 
         return OFF
     if published.kind == ERROR:
         return WITHIN if 0 <= found.value <= MAGNITUDE * published.value else OFF
+    if published.kind == EFFECTIVE:
+        return WITHIN if MAGNITUDE * found.value >= published.value else OFF
     if published.kind in (STANDARD, INTERVAL):
         multiple = z / (HALF_INTERVAL if published.kind == INTERVAL else 1.0)
         allowed = multiple * math.hypot(published.error, found.error)
@@ -151,6 +153,8 @@ def _one(entry):
         return repr(entry)
     if entry.kind == ERROR:
         return f"an error of {entry.value:.2g}"
+    if entry.kind == EFFECTIVE:
+        return f"an effective size of {entry.value:.4g}"
     return f"{entry.value:.12g} ± {entry.error:.2g} ({entry.kind})"
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from reproduction.errors import ArtifactError
 from reproduction.jobs import artifact
 from reproduction.jobs.files import write_whole
-from reproduction.rendering.quoted import BOUND, ERROR, INTERVAL, STANDARD
+from reproduction.rendering.quoted import BOUND, EFFECTIVE, ERROR, INTERVAL, STANDARD
 
 ON_DEMAND = {"speed_against_error", "hard_cases"}  # topics that are not part of the paper's run
 # a column of a table with one of these endings is the error of the column without it
@@ -145,6 +145,8 @@ def _numbers_of_a_table(path):
                 entry = Number(float(cell), float(row[name]), kind)
             elif column == "standard_error":
                 entry = Number(float(cell), 0.0, ERROR)
+            elif column.startswith("effective_"):
+                entry = Number(float(cell), 0.0, EFFECTIVE)
             else:
                 entry = cell
             entries[f"row {number}, {column}"] = entry

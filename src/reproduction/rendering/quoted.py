@@ -7,6 +7,7 @@ STANDARD = "standard error"
 INTERVAL = "half of a 95 % interval"
 ROUNDING = "rounding to the digits shown"
 ERROR = "an error itself"
+EFFECTIVE = "an effective sample size"
 
 
 class Quoted(str):
@@ -20,7 +21,7 @@ class Quoted(str):
     error : float
         Zero for a number that is an error itself.
     kind : str
-        What the error is: `BOUND`, `STANDARD`, `INTERVAL`, `ROUNDING` or `ERROR`.
+        What the error is: `BOUND`, `STANDARD`, `INTERVAL`, `ROUNDING`, `ERROR` or `EFFECTIVE`.
     """
 
     value: float

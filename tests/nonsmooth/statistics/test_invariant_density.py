@@ -87,6 +87,23 @@ def test_the_nonsmooth_limit_is_refused():
         bin_averages(PLASTIC.with_n(math.inf), {"y": [-1, 1]}, 1e-2)
 
 
+def test_closed_forms_of_the_nonsmooth_limit():
+    """A displacement is normal but held between walls, and a velocity is exp(-2 |y| - y^2)."""
+    x, y = np.linspace(-1.2, 1.2, 49), np.linspace(-3, 3, 41)
+    held = ns.Scene("obstacle", ns.White(1.0), math.inf, 0.5, potential="x**2/2", observable="x")
+    found = ns.invariant_density(held, points={"y": y, "x": x})
+    for name, exact in (("x", stats.truncnorm(-1, 1).pdf(x)), ("y", stats.norm.pdf(y))):
+        error = float(found[f"density_{name}_error"])
+        assert np.all(np.abs(found[f"density_{name}"] - exact) <= error)
+        assert error < 1e-12
+    sliding = ns.invariant_density(ns.Scene("friction", n=math.inf), points={"y": y})
+    total = math.e * math.sqrt(math.pi) * math.erfc(1.0)
+    exact = np.exp(-2 * np.abs(y) - y**2) / total
+    gap = np.abs(sliding["density_y"] - exact)
+    assert np.all(gap <= float(sliding["density_y_error"]) + 4 * np.finfo(float).eps * exact)
+    assert set(ns.invariant_density(held).x.values[[0, -1]]) == {-1.0, 1.0}
+
+
 @pytest.mark.parametrize(
     ("n", "damping", "sigma", "bins"), [(265.0, 2.0, 1.5, 161), (1.0, 1.0, 1.0, 61)]
 )

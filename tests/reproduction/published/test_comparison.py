@@ -19,7 +19,7 @@ from reproduction.published.comparison import (
     statistical,
 )
 from reproduction.published.record import Number, Record
-from reproduction.rendering.quoted import BOUND, ERROR, INTERVAL, ROUNDING, STANDARD
+from reproduction.rendering.quoted import BOUND, EFFECTIVE, ERROR, INTERVAL, ROUNDING, STANDARD
 
 Z = 5.0
 
@@ -50,6 +50,14 @@ def test_half_an_interval_is_two_standard_errors():
     published, found = Number(0.0, 3.0, INTERVAL), Number(0.0, 4.0, INTERVAL)
     assert state(published, moved(found, Z * 5.0 / 1.961), Z) == WITHIN
     assert state(published, moved(found, Z * 5.0 / 1.95), Z) == OFF
+
+
+def test_effective_sizes_are_samples_too():
+    """They differ between processors and seeds; a tenth of one says that weights have gone wrong."""
+    published = Number(3000.0, 0.0, EFFECTIVE)
+    assert state(published, replace(published, value=5000.0), Z) == WITHIN
+    assert state(published, replace(published, value=301.0), Z) == WITHIN
+    assert state(published, replace(published, value=299.0), Z) == OFF
 
 
 def test_what_has_no_error_must_be_equal():

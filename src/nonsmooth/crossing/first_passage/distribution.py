@@ -4,7 +4,8 @@ A scene becomes a first-passage problem: a `LineProblem` for one state variable,
 for two. It is solved on finer and finer levels until two of them agree.
 """
 
-from functools import cache, partial
+from contextlib import suppress
+from functools import cache, cached_property, partial
 
 import numpy as np
 
@@ -120,53 +121,101 @@ def _in_plane(scene, intervals, times, tol):
     """Return what solves each interval, for two state variables."""
     solvers, lengths = {}, intervals[:, 1] - intervals[:, 0]
     for group in _of_similar_size(lengths, tuning.SLABS.similar):
-        grids = cache(partial(_shared_grids, scene, intervals[group]))
-        for k in group:
-            solvers[k] = partial(_one_in_plane, scene, *intervals[k], times, tol, grids)
+        together = _Together(scene, intervals[group], times)
+        for row, k in enumerate(group):
+            solvers[k] = partial(_one_in_plane, together, row, tol)
     return [solvers[k] for k in range(len(intervals))]
 
 
-def _shared_grids(scene, intervals, times):
-    return SharedGrids(scene, intervals, np.array(times))
+class _Together:
+    """Intervals of two state variables that share grids and contours.
+
+    Parameters
+    ----------
+    scene : Scene
+    intervals : numpy.ndarray, shape (m, 2)
+    times : numpy.ndarray, shape (k,)
+
+    Attributes
+    ----------
+    scene, intervals, times
+    grids : callable
+        Takes a tuple of times; returns `SharedGrids`, the same for the same times.
+    """
+
+    def __init__(self, scene: Scene, intervals: np.ndarray, times: np.ndarray):
+        self.scene, self.intervals, self.times = scene, intervals, times
+        self.grids = cache(lambda times: SharedGrids(scene, intervals, np.array(times)))
+
+    def problem(self, row: int, times: np.ndarray) -> PlaneProblem:
+        """Return the problem of an interval."""
+        return PlaneProblem(self.scene, *self.intervals[row], times, self.grids(tuple(times)))
+
+    @cached_property
+    def early(self) -> np.ndarray:
+        """Which times are served by steps, shape (m, k).
+
+        Contours are better once they may bend, unless the interval is narrow.
+        """
+        settings, lengths = tuning.TIME_STEPPING, self.intervals[:, 1] - self.intervals[:, 0]
+        early = np.tile(self.times * self.scene.damping <= settings.until, (len(lengths), 1))
+        if early.any():
+            way = self.grids(tuple(self.times)).way
+            for row in np.flatnonzero(lengths >= settings.narrow * way):
+                with suppress(ToleranceError):  # its own solution tells
+                    early[row] &= ~tame(self.problem(row, self.times), self.times)
+        return early
+
+    @cached_property
+    def later(self) -> np.ndarray:
+        """Times at which contours serve some interval, shape (k,)."""
+        return ~self.early.all(axis=0)
+
+    def inverted(self, problem: PlaneProblem, times: np.ndarray):
+        """Prepare contours for the times that are `later`, on which steps do not serve all."""
+        levels = map(tuple, self.intervals.tolist())
+        return inverted(problem, times, dict(zip(levels, ~self.early[:, self.later], strict=True)))
 
 
-def _one_in_plane(scene, lower, upper, times, tol, grids):
+def _one_in_plane(together, row, tol):
     """Solve for two state variables: some early times by steps, the others by contours.
 
-    Contours are better once they may bend, unless the interval is narrow. Where they miss the
-    tolerance, steps are tried, and contours once more for the times that are left. `grids` makes
-    those for some of the times, which other intervals may have made before.
+    Where contours miss the tolerance, steps are tried, and contours once more for the times that
+    are left.
     """
+    times = together.times
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
     reasons = ["the solution is not finite"]
 
-    def solve(here, parts, solver):
-        """Solve at some of the times; keep what has a smaller error than what is known."""
+    def solve(here, parts, solver, at=None):
+        """Solve at some of the times; keep what has a smaller error than what is known.
+
+        `at` has the times of all intervals, if more than those of this one.
+        """
         if not here.any():
             return
-        shared = grids(tuple(times[here]))
-        problem = PlaneProblem(scene, lower, upper, times[here], shared)
+        at = here if at is None else at
+        problem = together.problem(row, times[at])
         try:
-            found, stated = _part_by_part(problem, times[here], parts, solver, tol)
+            found, stated = _part_by_part(problem, times[at], parts, solver, tol)
         except UnstableError as unstable:
             reasons.append(str(unstable))
             return
-        better = stated.max(axis=0) < error[:, here].max(axis=0)
-        chosen = np.flatnonzero(here)[better]
+        better = here[at] & (stated.max(axis=0) < error[:, at].max(axis=0))
+        chosen = np.flatnonzero(at)[better]
         solution[:, chosen], error[:, chosen] = found[:, better], stated[:, better]
 
-    settings, relaxations = tuning.TIME_STEPPING, times * scene.damping
-    early, late = relaxations <= settings.until, relaxations > settings.latest
-    whole = PlaneProblem(scene, lower, upper, times, grids(tuple(times)))
-    if early.any() and upper - lower >= settings.narrow * whole.grids.way:
-        early &= ~tame(whole, times)
+    whole = together.problem(row, times)
+    early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
     solve(early, tuning.STEPPED_PARTS, stepped)
-    by_slabs = np.isinf(error[0])  # they are stable on more grids than steps
-    solve(by_slabs, whole.resolutions, inverted)
+    solve(~early, whole.resolutions, together.inverted, together.later)
+    solve(
+        early & np.isinf(error[0]), whole.resolutions, inverted
+    )  # stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
         solve(missed & ~late, tuning.STEPPED_PARTS, stepped)
-        if np.sum(missed & late) < np.sum(by_slabs):  # without the times that are worst
+        if np.sum(missed & late) < np.sum(~early):  # without the times that are worst
             solve(missed & late, whole.resolutions, inverted)
     if np.isinf(error).any():
         raise ToleranceError(f"{reasons[-1]}; use method='monte_carlo'")

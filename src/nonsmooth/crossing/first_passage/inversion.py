@@ -29,7 +29,9 @@ from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_
 Solver = Callable[[ContourLevel, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def contour_solver(problem: LaplaceProblem, times: np.ndarray, tol: float) -> Solver:
+def contour_solver(
+    problem: LaplaceProblem, times: np.ndarray, tol: float, saddles: SaddlePoints | None = None
+) -> Solver:
     """Prepare the inversion for given times.
 
     Parameters
@@ -39,6 +41,8 @@ def contour_solver(problem: LaplaceProblem, times: np.ndarray, tol: float) -> So
         Increasing, positive.
     tol : float
         Absolute error wanted, for fits on vertical lines.
+    saddles : SaddlePoints, optional
+        Those of the problem unless given; for contours that serve others, too.
 
     Returns
     -------
@@ -47,11 +51,14 @@ def contour_solver(problem: LaplaceProblem, times: np.ndarray, tol: float) -> So
         wanted, shape (k,). Solves the windows with such a time anew. Returns probability and
         survival probability, shape (2, k), and at which times they are new.
     """
-    return contour_solvers([problem], times, tol)[0]
+    return contour_solvers([problem], times, tol, saddles and [saddles])[0]
 
 
 def contour_solvers(
-    problems: Sequence[LaplaceProblem], times: np.ndarray, tol: float
+    problems: Sequence[LaplaceProblem],
+    times: np.ndarray,
+    tol: float,
+    saddles: list[SaddlePoints] | None = None,
 ) -> list[Solver]:
     """Prepare the inversion of several problems that may share what they compute.
 
@@ -63,13 +70,15 @@ def contour_solvers(
         Of one kind.
     times, tol
         As for `contour_solver`.
+    saddles : list of SaddlePoints, optional
+        The same.
 
     Returns
     -------
     list of callable
         As of `contour_solver`.
     """
-    saddles = [saddle_points(problem, times) for problem in problems]
+    saddles = saddles or [saddle_points(problem, times) for problem in problems]
     kind: Callable = _Inversion
     if problems[0].on_vertical_lines:
         kind = partial(_OnVerticalLines, tol, _needs(problems, times, saddles))

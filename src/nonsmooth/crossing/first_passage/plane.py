@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from nonsmooth.crossing.first_passage.problem import (
     LaplaceProblem,
     Part,
 )
-from nonsmooth.crossing.first_passage.saddle_points import saddle_points
+from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, in_common, saddle_points
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.adding_doubling import fields
@@ -44,8 +45,8 @@ class SharedGrids:
 
     A resolution is a triple: of the grid in the driven variable, in the other one, and of the basis
     in which the grid is reduced. One grid serves all times. A basis is taken from solutions in the
-    longest interval, or in halves of it, one of which is longer than the interval that it is for,
-    and one shorter, unless one has its length.
+    longest interval, or in halves of it, one of which is at least as long as the interval that it
+    is for, and one at most, if there are several lengths.
 
     Parameters
     ----------
@@ -70,14 +71,16 @@ class SharedGrids:
             shorter = np.log2(self._length / lengths)
         self._halvings = int(np.ceil(shorter).max())
         # from pairs of levels to the halves of which one is longer and one is shorter
+        first = np.minimum(np.floor(shorter), max(self._halvings - 1, 0)).astype(int)
         self._halves = {
-            (float(lower), float(upper)): (math.floor(k), math.ceil(k))
-            for (lower, upper), k in zip(intervals, shorter, strict=True)
+            tuple(levels): (k, min(k + 1, self._halvings))
+            for levels, k in zip(intervals.tolist(), first.tolist(), strict=True)
         }
         self._grids: dict[tuple, PlaneOrdinates] = {}
         self._known: dict[tuple, list[np.ndarray]] = {}
         self._reduced: dict[tuple, ReducedOrdinates] = {}
         self._transforms: dict[tuple, dict] = {}
+        self._saddles: dict[tuple, dict[tuple, SaddlePoints]] = {}
 
     def grid(
         self, driven: int, other: int, levels: tuning.PlaneGrids = tuning.PLANE_GRIDS
@@ -147,6 +150,28 @@ class SharedGrids:
             return values[z][interval]
 
         return transform
+
+    def saddle_points(self, times: np.ndarray) -> dict[tuple[float, float], SaddlePoints]:
+        """Find the saddle points of all intervals but those that coarse grids do not resolve.
+
+        Parameters
+        ----------
+        times : numpy.ndarray, shape (k,)
+            Increasing, positive.
+
+        Returns
+        -------
+        dict
+            From intervals.
+        """
+        key = tuple(times)
+        if key not in self._saddles:
+            found = self._saddles[key] = {}
+            for interval in self._halves:
+                with suppress(ToleranceError, UnstableError):
+                    problem = PlaneProblem(self.scene, *interval, times, self)
+                    found[interval] = saddle_points(problem, times)
+        return self._saddles[key]
 
     def ordinates(
         self, driven: int, other: int, basis: int, halves: tuple[int, int] = (0, 0)
@@ -255,7 +280,23 @@ class PlaneProblem(LaplaceProblem):
         self, resolution: tuple, times: np.ndarray, rarity: float
     ) -> Callable[[complex], complex]:
         """Return F on a grid of some resolution; see `LaplaceProblem`."""
-        return self.grids.transform(resolution, (float(self.lower), float(self.upper)))
+        return self.grids.transform(resolution, self.levels)
+
+    @property
+    def levels(self) -> tuple[float, float]:
+        """Lower and upper level."""
+        return float(self.lower), float(self.upper)
+
+    def saddle_points(self, times: np.ndarray) -> SaddlePoints:
+        """Find the saddle points of its interval.
+
+        Parameters
+        ----------
+        times : numpy.ndarray, shape (k,)
+            Increasing, positive.
+        """
+        known = self.grids.saddle_points(times)
+        return known[self.levels] if self.levels in known else saddle_points(self, times)
 
     def mean_duration(self) -> float:
         """Mean of the lesser of the first passage time and of an exponential one, for first steps.
@@ -311,28 +352,42 @@ def _require_resolved(scene, ends, distance):
         )
 
 
-def inverted(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.ndarray]:
-    """Prepare the inversion of the transform.
+def inverted(
+    problem: PlaneProblem, times: np.ndarray, wanted: dict[tuple, np.ndarray] | None = None
+) -> Callable[[tuple], np.ndarray]:
+    """Prepare the inversion of the transform, on contours that serve all intervals of its grids.
 
     Parameters
     ----------
     problem : PlaneProblem
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
+    wanted : dict, optional
+        From these intervals to the times at which they are to be solved, boolean arrays of the
+        shape (k,); all unless given.
 
     Returns
     -------
     callable
         Takes the resolutions of the grid, driven and other variable, of the basis and of the
-        contour; returns probability and survival probability, shape (2, k).
+        contour; returns probability and survival probability, shape (2, k), 0 and 1 where they are
+        not wanted.
     """
-    solve, count = contour_solver(problem, times, 0.0), len(times)
-    nothing, every = np.array([np.zeros(count), np.ones(count)]), np.full(count, True)
+    least, count = np.log(tuning.PLANE.least_probability), len(times)
+    own, known = problem.saddle_points(times), problem.grids.saddle_points(times)
+    wanted = wanted or dict.fromkeys([*known, problem.levels], np.full(count, True))
+    counts = np.array([wanted[levels] & (of.bound >= least) for levels, of in known.items()])
+    here, begin = wanted[problem.levels], np.searchsorted(own.bound, least)
+    solve = contour_solver(problem, times, 0.0, in_common(list(known.values()), counts))
+    nothing = np.array([np.zeros(count), np.ones(count)])
 
     def solved(resolution):
         *grid, contour = resolution
         level = tuning.PLANE.levels[contour]._replace(resolution=tuple(grid))
-        return solve(level, nothing, every)[0]
+        found, _ = solve(level, nothing, here)
+        # contours that serve others may not serve it yet
+        found[:, :begin], found[:, ~here] = nothing[:, :begin], nothing[:, ~here]
+        return found
 
     return solved
 
@@ -358,7 +413,7 @@ def tame(problem: PlaneProblem, times: np.ndarray) -> np.ndarray:
     before = times / settings.since
     seen = np.union1d(before, times)
     try:
-        saddles = saddle_points(problem, seen)
+        saddles = problem.saddle_points(seen)
     except (ToleranceError, UnstableError):
         return np.full(len(times), False)
     bends = saddles.tilt[np.searchsorted(seen, before)] > settings.steepest

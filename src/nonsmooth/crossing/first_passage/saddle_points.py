@@ -9,8 +9,8 @@ F(z) is about exp(-z t_0), which grows for Re z < 0. A contour may bend to the l
 exp(z t) falls much faster than F grows. F is therefore also measured on some rays.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -105,6 +105,43 @@ def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
         np.array(early),
         np.array(steady),
         (axis.z, axis.log_F),
+    )
+
+
+def in_common(several: Sequence[SaddlePoints], counts: np.ndarray) -> SaddlePoints:
+    """Combine those of several problems, so that one contour serves all of them.
+
+    It crosses the axis at the least of the places: a smaller probability, whose own place is
+    farther, keeps its absolute accuracy there. Its arms bend as far as those of all problems may.
+
+    Parameters
+    ----------
+    several : sequence of SaddlePoints
+        For the same times.
+    counts : numpy.ndarray of bool, shape (m, k)
+        Which problem counts at which time.
+
+    Returns
+    -------
+    SaddlePoints
+        With the axis of the first.
+    """
+    counts = counts | ~counts.any(axis=0)
+
+    def smallest(name):
+        return np.min([getattr(own, name) for own in several], axis=0, where=counts, initial=np.inf)
+
+    def everywhere(name):
+        return np.all(~counts | [getattr(own, name) for own in several], axis=0)
+
+    return replace(
+        several[0],
+        place=smallest("place"),
+        width=smallest("width"),
+        bound=np.max([own.bound for own in several], axis=0),
+        tilt=smallest("tilt"),
+        early=everywhere("early"),
+        steady=everywhere("steady"),
     )
 
 

@@ -22,7 +22,6 @@ def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
     Parameters
     ----------
     scene : Scene
-        With a finite n.
     depth : float
         Outside, the density is of the order exp(-depth) of its maximum.
 
@@ -123,6 +122,8 @@ def _of_displacement(scene, speed, forcing):
     """Half width of the displacement, given those of the velocity and of the forcing."""
     search = tuning.BOX
     kink, _, outer = scene.mechanics.penalty.at(scene.n)
+    if scene.mechanics.in_potential and math.isinf(outer):
+        return kink
     # the potential energy there is the kinetic energy of the fastest velocity
     reach = np.geomspace(*search.displacements)
     U = vectorised(scene.potential_expression, (x,))
