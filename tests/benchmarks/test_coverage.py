@@ -6,7 +6,7 @@ from scipy import stats
 
 from benchmarks.coverage import COARSE, coverage, of_limits
 
-RUNS = 150
+RUNS = 100
 FALSE_ALARM = 1e-4
 
 

@@ -53,7 +53,7 @@ def test_half_an_interval_is_two_standard_errors():
 
 
 def test_effective_sizes_are_samples_too():
-    """They differ between processors and seeds; a tenth of one says that weights have gone wrong."""
+    """They differ between processors and seeds; a tenth says that weights went wrong."""
     published = Number(3000.0, 0.0, EFFECTIVE)
     assert state(published, replace(published, value=5000.0), Z) == WITHIN
     assert state(published, replace(published, value=301.0), Z) == WITHIN

@@ -149,7 +149,8 @@ class _Together:
 
     def problem(self, row: int, times: np.ndarray) -> PlaneProblem:
         """Return the problem of an interval."""
-        return PlaneProblem(self.scene, *self.intervals[row], times, self.grids(tuple(times)))
+        lower, upper = self.intervals[row]
+        return PlaneProblem(self.scene, lower, upper, times, self.grids(tuple(times)))
 
     @cached_property
     def early(self) -> np.ndarray:
@@ -161,7 +162,7 @@ class _Together:
         early = np.tile(self.times * self.scene.damping <= settings.until, (len(lengths), 1))
         if early.any():
             way = self.grids(tuple(self.times)).way
-            for row in np.flatnonzero(lengths >= settings.narrow * way):
+            for row in np.flatnonzero(lengths >= settings.narrow * way).tolist():
                 with suppress(ToleranceError):  # its own solution tells
                     early[row] &= ~tame(self.problem(row, self.times), self.times)
         return early
@@ -169,7 +170,7 @@ class _Together:
     @cached_property
     def later(self) -> np.ndarray:
         """Times at which contours serve some interval, shape (k,)."""
-        return ~self.early.all(axis=0)
+        return np.any(~self.early, axis=0)
 
     def inverted(self, problem: PlaneProblem, times: np.ndarray):
         """Prepare contours for the times that are `later`, on which steps do not serve all."""

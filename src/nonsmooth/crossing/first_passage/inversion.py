@@ -51,7 +51,7 @@ def contour_solver(
         wanted, shape (k,). Solves the windows with such a time anew. Returns probability and
         survival probability, shape (2, k), and at which times they are new.
     """
-    return contour_solvers([problem], times, tol, saddles and [saddles])[0]
+    return contour_solvers([problem], times, tol, None if saddles is None else [saddles])[0]
 
 
 def contour_solvers(

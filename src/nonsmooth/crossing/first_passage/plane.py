@@ -169,7 +169,8 @@ class SharedGrids:
             found = self._saddles[key] = {}
             for interval in self._halves:
                 with suppress(ToleranceError, UnstableError):
-                    problem = PlaneProblem(self.scene, *interval, times, self)
+                    lower, upper = interval
+                    problem = PlaneProblem(self.scene, lower, upper, times, self)
                     found[interval] = saddle_points(problem, times)
         return self._saddles[key]
 

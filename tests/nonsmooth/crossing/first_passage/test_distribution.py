@@ -114,7 +114,7 @@ class TestWhereSlabsFail:
     def unstable(self, monkeypatch):
         """Let all slabs fail."""
 
-        def fails(problem, times):
+        def fails(*problem_and_times):
             def solve(at):
                 raise UnstableError("the slabs amplify")
 
@@ -141,7 +141,7 @@ class TestWhereSlabsFail:
     def test_what_is_not_finite(self, monkeypatch):
         """It is no answer."""
         monkeypatch.setattr(
-            distribution, "inverted", lambda problem, times: lambda at: np.full((2, 1), np.nan)
+            distribution, "inverted", lambda *problem_and_times: lambda at: np.full((2, 1), np.nan)
         )
         with pytest.raises(ToleranceError, match="not finite; use method='monte_carlo'"):
             deterministic_crossing(COLORED_FRICTION, np.array([[-1.0, 1.0]]), np.array([50.0]), 0.1)

@@ -94,12 +94,12 @@ class TestCrossing:
             return sum(work)
 
         monkeypatch.setattr(plane, "fields", counted)
-        times, rng = 100 * np.geomspace(0.1, 20, 40), np.random.default_rng(5)
-        whole = asked(times, 3e-3)
+        times, rng = 100 * np.geomspace(0.5, 20, 12), np.random.default_rng(5)
+        whole = asked(times, 1e-2)
         for _ in range(2):
             some = np.sort(rng.choice(times, rng.integers(1, 6), replace=False))
-            assert asked(some, 3e-3) <= 1.2 * whole
-        assert asked(times, 1e-2) <= 1.2 * whole
+            assert asked(some, 1e-2) <= 1.2 * whole
+        assert asked(times, 3e-2) <= 1.2 * whole
 
 
 @pytest.mark.parametrize("scene", [COLORED_FRICTION, OBSTACLE.with_n(5)])
