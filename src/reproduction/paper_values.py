@@ -19,6 +19,7 @@ from reproduction.plasticity import relaxation_time
 from reproduction.rendering.printed import printed_values
 from reproduction.rendering.quoted import (
     BOUND,
+    EFFECTIVE,
     ERROR,
     INTERVAL,
     STANDARD,
@@ -233,11 +234,13 @@ def rare_crossings(runs: list[xr.Dataset], section: Mapping) -> dict:
     """Return the scale of table 11, its smallest probability and its largest relative error."""
     relative = max(float((run["probability_error"] / run["probability"]).max()) for run in runs)
     least = min((run.isel(threshold=-1) for run in runs), key=lambda run: run["probability"])
+    most = max(int(run["paths"]) for run in runs)
     return {
         "p": _short(section["p"]),
         "horizon": _short(section["horizon"]),
         "scenes": str(len(runs)),
-        "paths": _count(max(run["paths"] for run in runs)),
+        # so many as the weights ask for, which are random
+        "paths": Quoted(_count(most), most, 0.0, EFFECTIVE),
         "least": Quoted(
             _power(least["probability"]),
             least["probability"],

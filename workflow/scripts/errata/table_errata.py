@@ -1,11 +1,13 @@
 """Table of errata: what is printed, what is meant, and the evidence."""
 
+import numpy as np
 import pandas as pd
 
 from reproduction.rendering.tables import scientific, typeset
 
 RELATION = {"equal": "", "at least": r"\geq ", "at most": r"\leq "}
 WIDTHS = ("auto", "1.2fr", "2fr", "2fr", "1.8fr", *["auto"] * 5)
+ROUNDING = 1e-10  # relative, of what is compared without an error
 TEXTS = ("place", "wrong", "right", "quantity", "relation", "kind")
 
 
@@ -44,8 +46,8 @@ def errata(evidence):
     cells = pd.DataFrame(cells)
     cells.attrs["widths"] = WIDTHS
     plain = evidence.to_dataframe().reset_index()[["entry", *TEXTS, *sorted(evidence.data_vars)]]
-    for name in ("printed", "mended"):  # it is the error of the comparison
-        plain[f"{name}_error"] = plain["reference_error"]
+    for name in ("printed", "mended"):  # it is the error of the comparison, or rounding
+        plain[f"{name}_error"] = np.maximum(plain["reference_error"], ROUNDING * plain[name].abs())
     return plain, cells
 
 

@@ -60,8 +60,8 @@ def distances(rates, scenes):
         panel.xaxis.set_minor_formatter(NullFormatter())
         low, high = panel.get_ylim()
         panel.set_ylim(low, high * (high / low) ** 0.45)
-        panel.legend(loc="upper right", fontsize=6.5)
-        title = f"{MODELS[scene.model].title.lower()}, {scene.noise.kind} noise"
+        panel.legend(loc="upper right", fontsize=6.5, handlelength=1.2, borderaxespad=0.1)
+        title = f"{MODELS[scene.model].title.lower()}, {scene.noise.kind}"
         panel.set_title(title, fontsize=8, loc="left")
     return figure
 
