@@ -1,10 +1,15 @@
 """Bad input to the workflow: one clear line, a non-zero exit, nothing half-written."""
 
+import shutil
+
 import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
 import yaml
+
+from reproduction.errors import ArtifactError
+from reproduction.jobs import artifact
 
 RESULTS = "results/smoke"
 
@@ -79,13 +84,21 @@ def of_another_model(path):
     path.write_bytes(path.with_name("obstacle.nc").read_bytes())
 
 
+@pytest.mark.parametrize("damage", [truncated, with_nan, foreign])
+def test_artifacts_of_other_programs(smoke_run, tmp_path, damage):
+    """What a rule reads with is told whatever happened to a file."""
+    source = tmp_path / "trajectories" / "friction.nc"
+    shutil.copytree(smoke_run.folder / RESULTS / source.parent.name, source.parent)
+    assert artifact.read(source).sizes
+    damage(source)
+    with pytest.raises(ArtifactError, match="is truncated, changed, or no artifact.*delete it and"):
+        artifact.read(source)
+
+
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        slow(truncated, " is truncated, changed, or no artifact"),
         (flipped, " is damaged"),
-        slow(with_nan, " is truncated, changed, or no artifact"),
-        slow(foreign, " is truncated, changed, or no artifact"),
         slow(of_another_model, ": it is trajectories/obstacle.nc under another name"),
     ],
 )

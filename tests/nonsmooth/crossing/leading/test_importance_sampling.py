@@ -51,7 +51,8 @@ def distance(found, exact):
 def test_one_variable_against_the_solver(threshold, horizon, p):
     """Down to 1e-9 the probabilities are those of the first-passage equation."""
     found = sampled(FRICTION, threshold, [horizon], p, seed=1)
-    exact = solved(FRICTION, threshold, [horizon], p, tol=1e-13)
+    # a hundredth of the standard error, or less
+    exact = solved(FRICTION, threshold, [horizon], p, tol=1e-4 * found.probability.item())
     assert distance(found, exact).item() < LIMIT
     # a tenth of the probability was wanted, with three standard errors; bias and spread are below
     assert found.probability_error.item() < 0.1 * found.probability.item()
@@ -63,7 +64,7 @@ def test_horizons_share_guides():
     """A curve from 1e-6 to 0.3, every horizon within its error; W grows."""
     horizons = np.linspace(0.2, 2, 10)
     found = sampled(FRICTION, 0.6, horizons, 10.0, seed=2)
-    exact = solved(FRICTION, 0.6, horizons, 10.0, tol=1e-12)
+    exact = solved(FRICTION, 0.6, horizons, 10.0, tol=1e-10)
     assert distance(found, exact).max().item() < LIMIT
     assert np.all(np.diff(found.probability) > 0)
     assert (found.standard_error / found.probability).max().item() < 0.1
