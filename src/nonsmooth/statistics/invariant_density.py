@@ -44,8 +44,8 @@ def invariant_density(
         measure zero else.
     tol : float, optional
         Error allowed, relative to the largest value of each density. Unless given, it is 1e-8,
-        1e-6, 1e-2 or 5e-2 for one to four variables, and what misses that is returned with a
-        warning.
+        1e-6, 1e-2 or 5e-2 for one to four variables, and what misses that within about half a
+        minute is returned with a warning.
     points : dict, optional
         Maps the names of all variables of the state to points at which the densities are wanted;
         201 equidistant ones over the support unless given.
@@ -92,9 +92,10 @@ def invariant_density(
             points,
         )
 
+    most = math.inf if tol_given else tuning.INVARIANT_DENSITY.largest[scene.dimension]
     return answered(
         lambda: _refined(
-            scene, grid, tol, lambda grid: densities_on(scene, grid, names, points, accuracy)
+            scene, grid, tol, lambda grid: densities_on(scene, grid, names, points, accuracy), most
         ),
         present,
         tol_given,
@@ -134,7 +135,7 @@ def _of_closed_form(closed, points):
     return found, error
 
 
-def _refined(scene, grid, tol, solve):
+def _refined(scene, grid, tol, solve, most=math.inf):
     """Refine a grid until two levels agree.
 
     Parameters
@@ -146,6 +147,8 @@ def _refined(scene, grid, tol, solve):
         Error allowed, relative to the largest value of each array.
     solve : callable
         Takes a grid; returns a dict of arrays.
+    most : float
+        Points of the finest grid.
 
     Returns
     -------
@@ -171,7 +174,7 @@ def _refined(scene, grid, tol, solve):
         return max(np.max(difference[key]) / np.max(values[key]) for key in values)
 
     result = until_agreement(
-        _affordable(scene, grid),
+        _affordable(scene, grid, most),
         solve,
         difference,
         met=lambda values, difference: relative(values, difference) <= tol,
@@ -192,10 +195,12 @@ def _refined(scene, grid, tol, solve):
     return found
 
 
-def _affordable(scene: Scene, grid: Grid) -> Iterator[Grid]:
-    """Yield a grid and finer ones, as long as they can be solved on."""
+def _affordable(scene: Scene, grid: Grid, most: float) -> Iterator[Grid]:
+    """Yield a grid and finer ones, as long as they can be solved on and have few enough points."""
     yield grid
     while tensor_grid.affordable(scene, grid := grid.all_raised()):
+        if tensor_grid.points(scene, grid) > most:
+            return
         yield grid
 
 

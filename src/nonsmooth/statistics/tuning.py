@@ -59,6 +59,11 @@ class InvariantDensity:
 
     # chosen: tolerance unless one is given; it is reached in seconds
     tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2})
+    # chosen: points of the finest grid unless a tolerance is given, half a minute; peaks of colored
+    # friction and yielding take far more
+    largest: Mapping[int, float] = field(
+        default_factory=lambda: {2: math.inf, 3: 220_000, 4: math.inf}
+    )
     first: int = 1  # chosen: level of the first grid
     # chosen: levels of the grids on which the box and the shift are fitted; cheap ones
     fitted: Mapping[int, int] = field(default_factory=lambda: {1: 1, 2: 1, 3: 1, 4: 0})
