@@ -156,9 +156,12 @@ class _Together:
     def early(self) -> np.ndarray:
         """Which times are served by steps, shape (m, k).
 
-        Contours are better once they may bend, unless the interval is narrow.
+        Contours are better once they may bend, unless the interval is narrow. One that has one
+        level is as narrow as that level and its mirror image make it.
         """
         settings, lengths = tuning.TIME_STEPPING, self.intervals[:, 1] - self.intervals[:, 0]
+        mirrored = 2 * np.min(np.abs(self.intervals), axis=1)
+        lengths = np.where(np.isinf(lengths), mirrored, lengths)
         early = np.tile(self.times * self.scene.damping <= settings.until, (len(lengths), 1))
         if early.any():
             way = self.grids(tuple(self.times)).way
