@@ -100,10 +100,11 @@ class TestEarlyTimes:
         assert not stepped_at
         assert np.all(found["probability_error"] <= 1e-2)
 
-    def test_narrow_ones_are_marched(self, stepped_at):
-        """Within a relaxation time int g leaves an interval that is a part of its way."""
+    @pytest.mark.parametrize("levels", [(-0.2, 0.2), (-np.inf, 0.2)])
+    def test_narrow_ones_are_marched(self, stepped_at, levels):
+        """Within a relaxation time int g goes farther than to the levels, or to the only one."""
         times = np.array([1.0, 2.0])
-        deterministic_crossing(PLASTIC_STRAIN, np.array([[-0.2, 0.2]]), times, 1e-2)
+        deterministic_crossing(PLASTIC_STRAIN, np.array([levels]), times, 1e-2)
         assert stepped_at == [*times]
 
 
