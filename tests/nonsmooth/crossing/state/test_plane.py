@@ -70,7 +70,7 @@ def test_loose_tolerances_cost_paths_only():
 
 @pytest.mark.slow
 def test_tight_tolerance():
-    """1e-5 is met, and the loose answer's error contains the tight one."""
-    loose, tight = (solved(PLASTIC.with_n(5), "x", 0.7, tol) for tol in (1e-3, 1e-5))
+    """3e-5 is met, and the loose answer's error contains the tight one."""
+    loose, tight = (solved(PLASTIC.with_n(5), "x", 0.7, tol) for tol in (1e-3, 3e-5))
     gap = np.abs(loose["probability"] - tight["probability"])
     assert np.all(gap <= loose["probability_error"])
