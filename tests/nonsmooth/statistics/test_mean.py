@@ -117,7 +117,7 @@ def test_three_variables_agree_with_monte_carlo(model, noise):
     """Within five standard errors and the error of the grids."""
     scene = ns.Scene(model, noise, potential="x**2/2 + x/2", observable="y**2 + x")
     if model == "friction":
-        scene = ns.Scene(model, noise, observable="y**2")
+        scene = ns.Scene(model, noise, n=5, observable="y**2")
     solved, sampled = ns.mean(scene), ns.mean(scene, method="monte_carlo")
     assert abs(sampled.value - solved.value) <= 5 * sampled.error + solved.error
 
