@@ -91,7 +91,8 @@ def test_artifacts_of_other_programs(smoke_run, tmp_path, damage):
     shutil.copytree(smoke_run.folder / RESULTS / source.parent.name, source.parent)
     assert artifact.read(source).sizes
     damage(source)
-    with pytest.raises(ArtifactError, match=r"is truncated, changed, or no artifact.*delete it"):
+    message = r"is truncated, changed, or no artifact.*delete it and run snakemake again"
+    with pytest.raises(ArtifactError, match=message):
         artifact.read(source)
 
 

@@ -101,10 +101,11 @@ def test_a_tolerance_out_of_reach_is_refused_with_the_best_root():
 def test_times_of_near_thresholds():
     """Before damping matters int g scales like t^(3/2), and times like b^(2/3)."""
     near, nearer = (ns.failure_time(FRICTION, b).squeeze() for b in (1e-6, 1e-8))
-    # friction is linear, with the rate n, while y is below 1/n; it changes times by n T = 2e-2
+    # friction is linear, with the rate n, while y is below 1/n; it changes times by n T = 2e-2;
+    # the spread of an integrated velocity has the factor 1 - 3/8 n T, times change by less
     rates = FRICTION.damping + FRICTION.n
     ratio = float(near["time"] / nearer["time"])
-    assert ratio == pytest.approx(100 ** (2 / 3), rel=10 * rates * float(near["time"]))
+    assert ratio == pytest.approx(100 ** (2 / 3), rel=rates * float(near["time"]))
     assert near["time_error"] < 1e-6 * near["time"]
 
 
