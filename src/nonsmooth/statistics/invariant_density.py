@@ -198,9 +198,10 @@ def _refined(scene, grid, tol, solve, most=math.inf):
 def _affordable(scene: Scene, grid: Grid, most: float) -> Iterator[Grid]:
     """Yield a grid and finer ones, as long as they can be solved on and have few enough points."""
     yield grid
-    while tensor_grid.affordable(scene, grid := grid.all_raised()):
-        if tensor_grid.points(scene, grid) > most:
-            return
+    while (
+        tensor_grid.affordable(scene, grid := grid.all_raised())
+        and tensor_grid.points(scene, grid) <= most
+    ):
         yield grid
 
 
@@ -253,8 +254,10 @@ def closed_form(scene: Scene) -> dict[str, Callable]:
 
     def shape(x):
         x = np.asarray(x, dtype=float)
-        held = np.exp(-inverse * (energy(x) - lowest))
-        return np.where(np.abs(x) > wall, 0.0, held) if rigid else held
+        if not rigid:
+            return np.exp(-inverse * (energy(x) - lowest))
+        held = np.clip(x, -wall, wall)  # beyond, a potential may fall without bound
+        return np.where(x == held, np.exp(-inverse * (energy(held) - lowest)), 0.0)
 
     # with its full output it does not warn of an error that is returned anyway
     parts = [

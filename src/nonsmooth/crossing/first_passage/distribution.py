@@ -211,16 +211,15 @@ def _one_in_plane(together, row, tol):
 
     whole = together.problem(row, times)
     early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
-    solve(early, tuning.STEPPED_PARTS, stepped)
+    by_steps, by_contours = (tuning.STEPPED_PARTS, stepped), (whole.resolutions, inverted)
+    solve(early, *by_steps)
     solve(~early, whole.resolutions, together.inverted, together.later)
-    solve(
-        early & np.isinf(error[0]), whole.resolutions, inverted
-    )  # stable on more grids than steps
+    solve(early & np.isinf(error[0]), *by_contours)  # they are stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
-        solve(missed & ~late, tuning.STEPPED_PARTS, stepped)
+        solve(missed & ~late, *by_steps)
         if np.sum(missed & late) < np.sum(~early):  # without the times that are worst
-            solve(missed & late, whole.resolutions, inverted)
+            solve(missed & late, *by_contours)
     if np.isinf(error).any():
         raise ToleranceError(f"{reasons[-1]}; use method='monte_carlo'")
     return _answer(whole, times, solution, error, tol)

@@ -376,7 +376,7 @@ def inverted(
     """
     least, count = np.log(tuning.PLANE.least_probability), len(times)
     own, known = problem.saddle_points(times), problem.grids.saddle_points(times)
-    wanted = wanted or dict.fromkeys([*known, problem.levels], np.full(count, True))
+    wanted = wanted or dict.fromkeys(known, np.full(count, True))
     counts = np.array([wanted[levels] & (of.bound >= least) for levels, of in known.items()])
     here, begin = wanted[problem.levels], np.searchsorted(own.bound, least)
     solve = contour_solver(problem, times, 0.0, in_common(list(known.values()), counts))
