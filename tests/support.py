@@ -46,12 +46,14 @@ def one_step(scene, z, h, normals=(0.0, 0.0)):
     return data[list(STATE), 0]
 
 
-def coarse_ordinates(scene):
+def coarse_ordinates(scene, change=None):
     """Grid of a scene with two variables for the kinetic equation; Gibbs weights for obstacles."""
     ends = boxed(scene)
     if scene.model == "obstacle":
-        return gibbs_ordinates(scene, ends, GibbsLevel(12, 5, (0.3, 1.0), (0.5, 1.0), 1e-5))
-    return plane_ordinates(scene, ends, PlaneLevel(4, (4, 9.0), (9, ()), 3, 8.0, 0.1, 1e-5), 1.0)
+        level = GibbsLevel(12, 5, (0.3, 1.0), (0.5, 1.0), 1e-5)
+        return gibbs_ordinates(scene, ends, level, change)
+    level = PlaneLevel(4, (4, 9.0), (9, ()), 3, 8.0, 0.1, 1e-5)
+    return plane_ordinates(scene, ends, level, 1.0, change)
 
 
 class Repository:

@@ -142,6 +142,23 @@ class _Factors:
         return solution + self.lu.solve(right - matrix @ solution, trans=trans)
 
 
+def folded(matrix: sp.csr_array, parity: int) -> sp.csr_array:
+    """Restrict a matrix to odd or even functions, on the first half of a grid.
+
+    Parameters
+    ----------
+    matrix : scipy.sparse.csr_array, shape (2 n, 2 n)
+        It keeps the parity.
+    parity : {ODD, EVEN}
+
+    Returns
+    -------
+    scipy.sparse.csr_array, shape (n, n)
+    """
+    half = matrix.shape[0] // 2
+    return (matrix[:half, :half] + parity * matrix[:half, half:][:, ::-1]).tocsr()
+
+
 class DirectSolver:
     """Solver by sparse factorisation; see `solver.PoissonSolver` for what it promises.
 
@@ -175,10 +192,7 @@ class DirectSolver:
         """Return the generator on odd or even functions, folded."""
         if not self.mirrored:
             return self.generator
-        half = self.size // 2
-        return (
-            self.generator[:half, :half] + parity * self.generator[:half, half:][:, ::-1]
-        ).tocsr()
+        return folded(self.generator, parity)
 
     def _factor(self, parity):
         if parity not in self._factors:

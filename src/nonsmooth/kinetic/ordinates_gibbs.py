@@ -14,10 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+import sympy
 from numpy.polynomial import legendre
 
 from nonsmooth.errors import SceneError, quoted
 from nonsmooth.grids.elements import lagrange, lobatto
+from nonsmooth.grids.generator import Change
 from nonsmooth.grids.grading import mirrored
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
@@ -38,7 +40,9 @@ def applies(scene: Scene) -> bool:
     )
 
 
-def gibbs_ordinates(scene: Scene, ends: dict, level: tuning.GibbsLevel) -> PlaneOrdinates:
+def gibbs_ordinates(
+    scene: Scene, ends: dict, level: tuning.GibbsLevel, change: Change | None = None
+) -> PlaneOrdinates:
     """Discretise a scene to which this `applies`, with finite n and odd g and drift.
 
     Parameters
@@ -48,6 +52,8 @@ def gibbs_ordinates(scene: Scene, ends: dict, level: tuning.GibbsLevel) -> Plane
         Half widths of the box.
     level : GibbsLevel
         Resolution.
+    change : Change, optional
+        Of the scene, if derivatives are wanted.
 
     Returns
     -------
@@ -65,41 +71,97 @@ def gibbs_ordinates(scene: Scene, ends: dict, level: tuning.GibbsLevel) -> Plane
         for f, m, at in zip(g, masses, nodes, strict=True)
     ]
     polynomials = _hermite(scene.start.get("y", 0.0) / scale, many)
-    generator, start = {}, {}
+    generator, start, slope = {}, {}, {}
+    # noise and damping together keep a degree: they do not change a normal law
+    motion = _Motion(elements.raising, elements.lowering, -scene.damping, 0.0)
+    other = None if change is None else _change_of_motion(scene, elements, scale, change)
     for parity in (ODD, EVEN):
-        blocks, row = _blocks(elements, polynomials, parity, where, scene.damping)
+        row = _start(elements, polynomials, parity, where)
         moving, size = [], 0
         for k in range(many):
             centre = len(nodes[k % 2]) - row[k].shape[1]  # 1 where x = 0 is left out
             moving.append(size + kept[k % 2] - centre)
             size += row[k].shape[1]
         order = np.concatenate([*moving, np.delete(np.arange(size), np.concatenate(moving))])
-        generator[parity] = sp.block_array(blocks, format="csr")[order][:, order].tocsc()
+        generator[parity] = motion.matrix(row, parity)[order][:, order].tocsc()
+        if other is not None:
+            slope[parity] = other.matrix(row, parity)[order][:, order].tocsc()
         start[parity] = np.hstack(row)[0][order]
     way = math.sqrt((masses[0] @ g[0] ** 2) / masses[0].sum()) / scene.damping
     # `order` is that of EVEN, the last parity of the loop
     ones = (order < len(nodes[0])).astype(float)
     speeds = np.concatenate([g[k % 2][kept[k % 2]] for k in range(many)])
     weights = np.concatenate([masses[k % 2][kept[k % 2]] for k in range(many)])
-    return PlaneOrdinates(speeds, weights / masses[0].sum(), ones, way, generator, start)
+    weights /= masses[0].sum()
+    return PlaneOrdinates(speeds, weights, ones, way, generator, start, slope or None)
 
 
-def _blocks(elements, polynomials, parity, where, damping):
-    """Make the generator, a block for each pair of Hermite degrees, and the row of the start."""
-    many = len(polynomials)
-    blocks: list = [[None] * many for _ in range(many)]
+def _start(elements, polynomials, parity, where):
+    """Row of the start, a part for each Hermite degree."""
     at_start, row = elements.at(where), []
-    for k in range(many):
+    for k, value in enumerate(polynomials):
         own = parity * (-1) ** k  # parity in x
-        row.append(polynomials[k] * _folded(at_start[k % 2], own))
+        row.append(value * _folded(at_start[k % 2], own))
         if where == 0 and own == ODD:
             row[-1] *= 0.0
-        blocks[k][k] = -damping * k * sp.eye_array(row[-1].shape[1])
-        if k + 1 < many:
-            root = math.sqrt(k + 1)
-            blocks[k + 1][k] = sp.csr_array(root * _half(elements.raising[k % 2], own))
-            blocks[k][k + 1] = sp.csr_array(root * _half(elements.lowering[(k + 1) % 2], -own))
-    return blocks, row
+    return row
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """A generator in Hermite polynomials of y / s.
+
+    Attributes
+    ----------
+    raising, lowering : tuple of numpy.ndarray
+        From even and odd degrees to the next ones, but for the root of the higher degree.
+    keeping : float
+        A degree k is multiplied by it and k.
+    falling : float
+        From k to k - 2, but for the root of k (k - 1).
+    """
+
+    raising: tuple
+    lowering: tuple
+    keeping: float
+    falling: float
+
+    def matrix(self, row, parity):
+        """Put together a block for each pair of degrees; `row` has a part of the size of each."""
+        many = len(row)
+        blocks: list = [[None] * many for _ in range(many)]
+        for k, part in enumerate(row):
+            one, own = sp.eye_array(part.shape[1]), parity * (-1) ** k
+            blocks[k][k] = self.keeping * k * one
+            if k > 1 and self.falling:
+                blocks[k - 2][k] = math.sqrt(k * (k - 1)) * self.falling * one
+            if k + 1 < many:
+                root = math.sqrt(k + 1)
+                blocks[k + 1][k] = sp.csr_array(root * _half(self.raising[k % 2], own))
+                blocks[k][k + 1] = sp.csr_array(root * _half(self.lowering[(k + 1) % 2], -own))
+        return sp.block_array(blocks, format="csr")
+
+
+def _change_of_motion(scene, elements, scale, change):
+    """Derivative of the generator, in the polynomials and elements of the scene.
+
+    d_y lowers a degree by its root over s. So y d_y keeps it, and lowers it by two.
+    """
+    rough, forces = elements.nodes[1], []
+    for drift in (scene.numerical_drift(), change.drift):
+        forces.append(-vectorised(sympy.sympify(drift[y]).subs(y, 0), (x,))(rough))
+    moving = float(sympy.diff(change.drift[x], y))
+    damping = -float(sympy.diff(change.drift[y], y))
+    own, changed = forces
+    turned = ((changed - moving * own) / scale)[:, None] * elements.value
+    raising = tuple(moving * part for part in elements.raising)
+    up, down = (moving * part for part in elements.lowering)
+    return _Motion(
+        raising,
+        (up - turned, down - _adjoint(turned, elements.masses)),
+        -damping,
+        change.diffusion / scale**2 - damping,
+    )
 
 
 @dataclass(frozen=True)
@@ -111,6 +173,8 @@ class _Elements:
     edges : numpy.ndarray
     local, nodes, masses : tuple of numpy.ndarray
         Nodes of an element, nodes, and masses of the invariant density, for both kinds.
+    value : numpy.ndarray
+        Values at the discontinuous nodes of what is known at the continuous ones.
     raising, lowering : tuple of numpy.ndarray
         What the motion does to a Hermite degree of either kind, but for the root of the degree.
     """
@@ -119,6 +183,7 @@ class _Elements:
     local: tuple
     nodes: tuple
     masses: tuple
+    value: np.ndarray
     raising: tuple
     lowering: tuple
 
@@ -144,17 +209,20 @@ def _elements(scene, edges, degree, scale):
     up = scale * slope
     down = up - (force / scale)[:, None] * value
 
-    def adjoint(matrix):
-        return matrix.T * masses[1] / masses[0][:, None]
-
     return _Elements(
         edges,
         (lobatto(degree)[0], gauss),
         (smooth[0], rough[0]),
         tuple(masses),
-        (up, -adjoint(down)),
-        (down, -adjoint(up)),
+        value,
+        (up, -_adjoint(down, masses)),
+        (down, -_adjoint(up, masses)),
     )
+
+
+def _adjoint(matrix, masses):
+    """From the discontinuous nodes to the continuous ones."""
+    return matrix.T * masses[1] / masses[0][:, None]
 
 
 def _edges(scene, end, settings):

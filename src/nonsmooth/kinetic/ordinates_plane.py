@@ -7,7 +7,7 @@ where g = 0.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,9 +15,9 @@ import scipy.sparse.linalg as spla
 import sympy
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.grids.direct_solver import DirectSolver
+from nonsmooth.grids.direct_solver import DirectSolver, folded
 from nonsmooth.grids.elements import Axis, continuous, discontinuous
-from nonsmooth.grids.generator import evaluate, start_row
+from nonsmooth.grids.generator import Change, assemble, evaluate, start_row
 from nonsmooth.grids.grading import distinct, graded, mirrored
 from nonsmooth.grids.mesh.axes import variables
 from nonsmooth.grids.mesh.edges import kinks
@@ -52,6 +52,8 @@ class PlaneOrdinates:
         A for each parity, sparse.
     start : dict
         Row vectors that interpolate functions of each parity at the start.
+    change : dict, optional
+        Derivative of the generator on the same nodes, for each parity, sparse.
     """
 
     speeds: np.ndarray
@@ -60,6 +62,13 @@ class PlaneOrdinates:
     way: float
     generator: dict
     start: dict
+    change: dict | None = None
+
+    def changed(self, part: complex) -> "PlaneOrdinates":
+        """Add a part of the derivative to the generator."""
+        assert self.change is not None
+        generator = {parity: A + part * self.change[parity] for parity, A in self.generator.items()}
+        return replace(self, generator=generator)
 
     def eliminated(self, z: complex) -> dict:
         """Eliminate the nodes that stand still, for each parity; see `Scattering`."""
@@ -85,19 +94,52 @@ class Scattering:
 
     def applied(self, values: np.ndarray) -> np.ndarray:
         """Apply it to functions on the nodes that move, the columns of an array."""
-        moving = self._matrix[:, : self._many] @ values
+        return self._matrix[: self._many] @ self._continued(values)
+
+    def derivative(
+        self, change: sp.sparray, tests: np.ndarray, values: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Differentiate what it makes of functions, if A changes.
+
+        Parameters
+        ----------
+        change : sparse array
+            Derivative of A.
+        tests : numpy.ndarray, shape (l, k)
+        values : numpy.ndarray, shape (k, m)
+            Functions on the nodes that move, in columns.
+
+        Returns
+        -------
+        tested : numpy.ndarray, shape (l, m)
+            Derivative of `tests` @ `applied(values)`.
+        at_start : numpy.ndarray, shape (m,)
+            Derivative of `start_row()` @ `values`.
+        """
+        moving, still = np.split(change @ self._continued(values), [self._many])
         if self._still is None:
-            return moving
-        inside = self._still.solve(moving[self._many :])
-        return moving[: self._many] - self._matrix[: self._many, self._many :] @ inside
+            return -tests @ moving, np.zeros(values.shape[1])
+        across = self._matrix[: self._many, self._many :]
+        inside = self._still.solve((across.T @ tests.T).astype(self._matrix.dtype), trans="T")
+        return inside.T @ still - tests @ moving, self._start_inside() @ still
+
+    def _continued(self, values):
+        """Functions on all nodes."""
+        if self._still is None:
+            return values
+        inside = self._still.solve(self._matrix[self._many :, : self._many] @ values)
+        return np.vstack([values, -inside])
+
+    def _start_inside(self):
+        """Row of the start, to be applied to what the matrix makes of values at the others."""
+        return self._still.solve(self._row[self._many :].astype(self._matrix.dtype), trans="T")
 
     def start_row(self) -> np.ndarray:
         """Row vector that interpolates at the start from the nodes that move."""
         many, row = self._many, self._row
         if self._still is None or not np.any(row[many:]):
             return row[:many]
-        weights = self._still.solve(row[many:].astype(self._matrix.dtype), trans="T")
-        return row[:many] - weights @ self._matrix[many:, :many]
+        return row[:many] - self._start_inside() @ self._matrix[many:, :many]
 
 
 def boxed(scene: Scene) -> dict:
@@ -121,7 +163,11 @@ def boxed(scene: Scene) -> dict:
 
 
 def plane_ordinates(
-    scene: Scene, ends: dict, level: tuning.PlaneLevel, time: float
+    scene: Scene,
+    ends: dict,
+    level: tuning.PlaneLevel,
+    time: float,
+    change: Change | None = None,
 ) -> PlaneOrdinates:
     """Discretise a scene with two state variables, finite n, odd drift and odd g.
 
@@ -134,6 +180,8 @@ def plane_ordinates(
         Resolution.
     time : float
         Shortest time of interest, "1".
+    change : Change, optional
+        Of the scene, if derivatives are wanted.
 
     Returns
     -------
@@ -147,13 +195,18 @@ def plane_ordinates(
     weights = _weights(solve, start[EVEN], time)
     moving = _carriers(weights * np.abs(g), level.dropped)
     order = np.append(moving, np.setdiff1d(np.arange(half), moving))
+
+    def ordered(whole):
+        return {p: folded(whole, p)[order][:, order].tocsc() for p in (ODD, EVEN)}
+
     return PlaneOrdinates(
         g[moving],
         weights[moving],
         np.ones(len(order)),
         math.sqrt(weights @ g**2 / weights.sum()) / scene.damping,
-        {p: solve.matrix(p)[order][:, order].tocsc() for p in (ODD, EVEN)},
+        ordered(solve.generator),
         {p: start[p][order] for p in (ODD, EVEN)},
+        None if change is None else ordered(assemble(scene, made, change=change)),
     )
 
 

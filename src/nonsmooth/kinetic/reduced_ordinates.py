@@ -11,7 +11,7 @@ product weighted by the invariant measure times |g|, V is orthonormal, and Galer
 for even and odd parts e, o of h in the state. The modes of this small system solve it exactly in x.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,18 +47,85 @@ class ReducedOrdinates:
         -------
         numpy.ndarray of complex, shape (m,)
         """
-        grid, signs = self.grid, np.sign(self.grid.speeds)[:, None]
-        parts, weights = grid.eliminated(z), grid.masses[:, None] * self.basis
-        even = weights.T @ parts[EVEN].applied(self.basis)
-        odd = (signs * weights).T @ parts[ODD].applied(signs * self.basis)
-        ones = weights.T @ (np.abs(grid.speeds) * grid.ones[: len(signs)])
-        rates, modes = _modes(even, odd)
-        rows = parts[EVEN].start_row(), parts[ODD].start_row()
-        values = []
-        for interval in intervals:
-            e, o = _at_start(rates, modes, even, ones, *interval)
-            values.append(rows[0] @ (self.basis @ e) + rows[1] @ (signs[:, 0] * (self.basis @ o)))
-        return np.array(values).reshape(len(intervals))
+        modes = self.modes(z)
+        return np.array([modes.at_start(*interval) for interval in intervals])
+
+    def functions(self, parity: int) -> np.ndarray:
+        """Basis of even or of odd functions, on the nodes that move; shape (k, r)."""
+        return self.basis if parity == EVEN else np.sign(self.grid.speeds)[:, None] * self.basis
+
+    def tests(self, parity: int) -> np.ndarray:
+        """Functions by which equations are tested, weighted by the masses; shape (r, k)."""
+        return (self.grid.masses[:, None] * self.functions(parity)).T
+
+    def modes(self, z: complex, eliminated: dict | None = None) -> "ReducedModes":
+        """Compute the modes.
+
+        Parameters
+        ----------
+        z : complex
+        eliminated : dict, optional
+            What `PlaneOrdinates.eliminated` returns for z, if it is known.
+        """
+        parts, matrices, rows = eliminated or self.grid.eliminated(z), {}, {}
+        for parity, part in parts.items():
+            functions = self.functions(parity)
+            matrices[parity] = self.tests(parity) @ part.applied(functions)
+            rows[parity] = part.start_row() @ functions
+        flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
+        rates, even = _modes(matrices[EVEN], matrices[ODD])
+        odd = matrices[EVEN] @ even / rates
+        return ReducedModes(rates, even, odd, self.tests(EVEN) @ flow, rows[EVEN], rows[ODD])
+
+
+@dataclass(frozen=True)
+class ReducedModes:
+    """Solutions of E e = o' and O o = e' that change in x as exp(rate x), at a place z.
+
+    Attributes
+    ----------
+    rates : numpy.ndarray, shape (r,)
+        Of positive real part; for each of them, the mode with the opposite rate is this one with
+        the opposite sign of its odd part.
+    even, odd : numpy.ndarray, shape (r, r)
+        Modes in columns.
+    ones : numpy.ndarray, shape (r,)
+        The function 1.
+    even_row, odd_row : numpy.ndarray, shape (r,)
+        They interpolate at the start.
+    """
+
+    rates: np.ndarray
+    even: np.ndarray
+    odd: np.ndarray
+    ones: np.ndarray
+    even_row: np.ndarray
+    odd_row: np.ndarray
+
+    def at_start(self, lower: float, upper: float) -> complex:
+        """Value at x = 0 and the start, if it is 1 where the flow leaves an interval."""
+        if np.isinf(upper):
+            return self.mirrored().at_start(-np.inf, -lower)
+        strengths = np.linalg.solve(self.at_wall(upper - lower), self.ones)
+        return self.value(self.left(upper) * strengths, self.left(-lower) * strengths)
+
+    def mirrored(self) -> "ReducedModes":
+        """Exchange above and below, for one wall: the other one is infinitely far."""
+        return replace(self, odd_row=-self.odd_row)
+
+    def left(self, distance: float) -> np.ndarray:
+        """Parts of the modes that are left at a distance, 0 at an infinite one."""
+        return np.exp(-self.rates * distance) if np.isfinite(distance) else 0.0 * self.rates
+
+    def at_wall(self, length: float) -> np.ndarray:
+        """Values where the flow leaves at one wall, if the strengths at both walls are the same."""
+        across = self.left(length)
+        return self.even * (1 + across) + self.odd * (1 - across)
+
+    def value(self, above: np.ndarray, below: np.ndarray) -> complex:
+        """Value at the start, of parts of the modes that decay from above and from below."""
+        even, odd = self.even @ (above + below), self.odd @ (above - below)
+        return self.even_row @ even + self.odd_row @ odd
 
 
 def reduced(grid: PlaneOrdinates, fields: np.ndarray, accuracy: float) -> ReducedOrdinates:
@@ -84,19 +151,6 @@ def reduced(grid: PlaneOrdinates, fields: np.ndarray, accuracy: float) -> Reduce
     left, sizes, _ = np.linalg.svd(weighted - np.outer(ones, ones @ weighted), full_matrices=False)
     kept = left[:, sizes > accuracy * np.linalg.norm(weighted, axis=0).max()]
     return ReducedOrdinates(grid, np.column_stack([ones, kept]) / flow[:, None])
-
-
-def _at_start(rates, modes, even, ones, lower, upper):
-    """Even and odd parts at x = 0, if h = 1 where the flow leaves."""
-    other = even @ modes / rates
-    if not (np.isfinite(lower) and np.isfinite(upper)):
-        decay, side = np.exp(-rates * min(upper, -lower)), 1 if np.isfinite(upper) else -1
-        amplitudes = np.linalg.solve(modes + other, ones) * decay
-        return modes @ amplitudes, side * other @ amplitudes
-    # h is its own mirror image at the centre: e is even in the distance to it, and o is odd
-    across, near, far = (np.exp(-rates * d) for d in (upper - lower, upper, -lower))
-    amplitudes = np.linalg.solve(modes * (1 + across) + other * (1 - across), ones)
-    return modes @ (amplitudes * (near + far)), other @ (amplitudes * (near - far))
 
 
 def _modes(even, odd):

@@ -17,7 +17,7 @@ from nonsmooth.errors import ToleranceError, answered
 from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
-from nonsmooth.sensitivity import differences, first_passage, sampled, tuning
+from nonsmooth.sensitivity import differences, first_passage, plane, sampled, tuning
 from nonsmooth.sensitivity.parameters import require_parameter_of
 from nonsmooth.sensitivity.questions import Question
 
@@ -113,12 +113,16 @@ def _solved(question, parameter, tol):
     It has none where its modes are rounded, and few digits where W has fronts.
     """
     refusals = []
-    for solver in (first_passage, differences):
-        if solver is differences or first_passage.applies(question.scene):
-            try:
-                return solver.logarithmic_derivative(question, parameter, tol)
-            except ToleranceError as refused:
-                refusals.append(refused)
+    solvers = [differences]
+    if first_passage.applies(question.scene):
+        solvers.insert(0, first_passage)
+    elif plane.applies(question.scene, parameter):
+        solvers.insert(0, plane)
+    for solver in solvers:
+        try:
+            return solver.logarithmic_derivative(question, parameter, tol)
+        except ToleranceError as refused:
+            refusals.append(refused)
     raise min(refusals, key=_worst_error)
 
 

@@ -1,6 +1,6 @@
 """Derivatives of crossing probabilities with one state variable, by the adjoint kinetic equation.
 
-The Laplace transform of the crossing time is differentiated at each place z (`kinetic.adjoint`) and
+The Laplace transform of the crossing time is differentiated at each place z (`kinetic.derivatives.adjoint`) and
 inverted like the transform itself: one solution, where a difference takes several. The derivative
 is small where the probability is, so that one vertical line serves all times.
 """
@@ -15,7 +15,7 @@ from nonsmooth.crossing.first_passage import tuning as of_first_passage
 from nonsmooth.crossing.first_passage import vertical_lines
 from nonsmooth.crossing.first_passage.line import Intervals, LineProblem
 from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_points
-from nonsmooth.kinetic.adjoint import Adjoint
+from nonsmooth.kinetic.derivatives.adjoint import Adjoint
 from nonsmooth.kinetic.ordinates_line import Change, changed, ordinates
 from nonsmooth.line.potential import depth
 from nonsmooth.refine import until_agreement

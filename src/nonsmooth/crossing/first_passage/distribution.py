@@ -22,6 +22,7 @@ from nonsmooth.crossing.first_passage.problem import (
 )
 from nonsmooth.crossing.first_passage.time_stepping import stepped
 from nonsmooth.errors import SceneError, ToleranceError, answered
+from nonsmooth.grids.generator import Change
 from nonsmooth.kinetic import tail_descent
 from nonsmooth.kinetic.ordinates_plane import UnstableError
 from nonsmooth.line.potential import depth
@@ -121,13 +122,13 @@ def _in_plane(scene, intervals, times, tol):
     """Return what solves each interval, for two state variables."""
     solvers, lengths = {}, intervals[:, 1] - intervals[:, 0]
     for group in _of_similar_size(lengths, tuning.SLABS.similar):
-        together = _Together(scene, intervals[group], times)
+        together = Together(scene, intervals[group], times)
         for row, k in enumerate(group):
             solvers[k] = partial(_one_in_plane, together, row, tol)
     return [solvers[k] for k in range(len(intervals))]
 
 
-class _Together:
+class Together:
     """Intervals of two state variables that share grids and contours.
 
     Parameters
@@ -135,6 +136,8 @@ class _Together:
     scene : Scene
     intervals : numpy.ndarray, shape (m, 2)
     times : numpy.ndarray, shape (k,)
+    change : Change, optional
+        As for `SharedGrids`.
 
     Attributes
     ----------
@@ -143,9 +146,15 @@ class _Together:
         Takes a tuple of times; returns `SharedGrids`, the same for the same times.
     """
 
-    def __init__(self, scene: Scene, intervals: np.ndarray, times: np.ndarray):
+    def __init__(
+        self,
+        scene: Scene,
+        intervals: np.ndarray,
+        times: np.ndarray,
+        change: Change | None = None,
+    ):
         self.scene, self.intervals, self.times = scene, intervals, times
-        self.grids = cache(lambda times: SharedGrids(scene, intervals, np.array(times)))
+        self.grids = cache(lambda times: SharedGrids(scene, intervals, np.array(times), change))
 
     def problem(self, row: int, times: np.ndarray) -> PlaneProblem:
         """Return the problem of an interval."""

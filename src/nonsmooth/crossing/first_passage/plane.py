@@ -15,8 +15,10 @@ from nonsmooth.crossing.first_passage.problem import (
 )
 from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, in_common, saddle_points
 from nonsmooth.errors import ToleranceError
+from nonsmooth.grids.generator import Change
 from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.adding_doubling import fields
+from nonsmooth.kinetic.marching.split_step import IMAGINARY
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import (
@@ -55,6 +57,9 @@ class SharedGrids:
         All finite, or all with one infinite level.
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
+    change : Change, optional
+        Of the scene, if derivatives are wanted: grids know that of the generator, in bases are
+        solutions with a changed generator, too, and grids for steps have imaginary parts.
 
     Attributes
     ----------
@@ -62,8 +67,14 @@ class SharedGrids:
         Half widths of the box, from symbols.
     """
 
-    def __init__(self, scene: Scene, intervals: np.ndarray, times: np.ndarray):
-        self.scene, self.ends = scene, boxed(scene)
+    def __init__(
+        self,
+        scene: Scene,
+        intervals: np.ndarray,
+        times: np.ndarray,
+        change: Change | None = None,
+    ):
+        self.scene, self.ends, self._change = scene, boxed(scene), change
         self._times, lengths = times, intervals[:, 1] - intervals[:, 0]
         self._length = lengths.max()
         shorter = np.zeros(len(intervals))
@@ -98,23 +109,29 @@ class SharedGrids:
         if key not in self._grids:
             if ordinates_gibbs.applies(self.scene):
                 self._grids[key] = gibbs_ordinates(
-                    self.scene, self.ends, levels.gibbs(driven, other)
+                    self.scene, self.ends, levels.gibbs(driven, other), self._change
                 )
             else:
-                level = levels.plane(driven, other)
-                self._grids[key] = plane_ordinates(self.scene, self.ends, level, self._early)
+                self._grids[key] = plane_ordinates(
+                    self.scene, self.ends, levels.plane(driven, other), self._early, self._change
+                )
         return self._grids[key]
 
-    def tensor_grid(self, driven: int, other: int) -> TensorOrdinates:
-        """Make a grid for steps in time, unless there is one in Hermite polynomials.
+    def stepped_grid(self, driven: int, other: int) -> PlaneOrdinates | TensorOrdinates:
+        """Make a grid for steps in time, in Hermite polynomials if there is one.
 
         Parameters
         ----------
         driven, other : int
             As for `grid`.
         """
-        level = tuning.STEPPED_GRIDS.plane(driven, other)
-        return tensor_ordinates(self.scene, self.ends, level, self._early)
+        levels = tuning.STEPPED_GRIDS
+        if ordinates_gibbs.applies(self.scene):
+            grid = self.grid(driven, other, levels)
+            return grid if self._change is None else grid.changed(IMAGINARY)
+        return tensor_ordinates(
+            self.scene, self.ends, levels.plane(driven, other), self._early, self._change
+        )
 
     @property
     def way(self) -> float:
@@ -211,7 +228,9 @@ class SharedGrids:
             grid = self.grid(driven, other)
             # what int g goes within a relaxation time, or within 1/z if this is shorter
             way = grid.way / (1 + z / self.scene.damping)
-            self._known[key] = fields(grid, z, self._length, thin * way, self._halvings)
+            grids = [grid] if self._change is None else [grid, grid.changed(tuning.SLABS.changed)]
+            found = [fields(one, z, self._length, thin * way, self._halvings) for one in grids]
+            self._known[key] = [np.hstack(of_half) for of_half in zip(*found, strict=True)]
         return self._known[key]
 
     def _shifts(self, refined):
@@ -275,7 +294,7 @@ class PlaneProblem(LaplaceProblem):
 
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
         """Return F on the coarsest grid; see `LaplaceProblem`."""
-        return self.transform((0, 0, 0), self._times, 0.0)
+        return self.grids.transform((0, 0, 0), self.levels)
 
     def transform(
         self, resolution: tuple, times: np.ndarray, rarity: float

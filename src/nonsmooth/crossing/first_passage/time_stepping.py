@@ -18,14 +18,15 @@ from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.grids.elements import discontinuous
 from nonsmooth.grids.grading import graded, split
-from nonsmooth.kinetic import ordinates_gibbs
 from nonsmooth.kinetic.marching.coefficients import CoefficientSteps
 from nonsmooth.kinetic.marching.split_step import Interval
 from nonsmooth.kinetic.marching.tensor import TensorSteps
-from nonsmooth.kinetic.ordinates_plane import UnstableError
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, UnstableError
 
 
-def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.ndarray]:
+def stepped(
+    problem: PlaneProblem, times: np.ndarray, stretch: float = 0.0
+) -> Callable[[tuple], np.ndarray]:
     """Prepare the steps.
 
     Parameters
@@ -33,12 +34,15 @@ def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.nd
     problem : PlaneProblem
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
+    stretch : float
+        Derivative of the logarithm of both levels, for the imaginary part.
 
     Returns
     -------
     callable
         Takes the resolutions of the grid, driven and other variable, of x and of time; returns
-        probability and survival probability, shape (2, k). Raises `UnstableError` if the solution
+        probability and survival probability, shape (2, k); their derivatives times `IMAGINARY` are
+        the imaginary parts, see `split_step`. Raises `UnstableError` if the solution
         grows.
     """
     settings, damping, last = tuning.TIME_STEPPING, problem.scene.damping, times[-1]
@@ -60,7 +64,9 @@ def stepped(problem: PlaneProblem, times: np.ndarray) -> Callable[[tuple], np.nd
             settings.reached / math.sqrt(min(step, 1.0)) * spread,
         )
         first = step * settings.first * min(duration, settings.early / damping)
-        steps = _steps(problem, driven, other, interval, first)
+        if stretch:
+            interval = interval.stretched(stretch)
+        steps = _steps(problem.grids.stepped_grid(driven, other), interval, first)
         longest = step * settings.longest / max(damping, steps.rate)
         at, values = _survival(steps, longest, settings.per_length / step, last)
         found = CubicSpline(at, values)(times)
@@ -101,12 +107,10 @@ def _towards(wall, finest, widest, reach, other):
     return graded(max(reach, other), other / 2, ratio)[::-1]
 
 
-def _steps(problem, driven, other, interval, step):
-    """Choose the scheme for the state."""
-    if ordinates_gibbs.applies(problem.scene):
-        grid = problem.grids.grid(driven, other, tuning.STEPPED_GRIDS)
-        return CoefficientSteps(grid, interval, step)
-    return TensorSteps(problem.grids.tensor_grid(driven, other), interval, step)
+def _steps(grid, interval, step):
+    """Choose the scheme for a grid."""
+    scheme = CoefficientSteps if isinstance(grid, PlaneOrdinates) else TensorSteps
+    return scheme(grid, interval, step)
 
 
 def _survival(steps, longest, per_length, last):
@@ -118,7 +122,7 @@ def _survival(steps, longest, per_length, last):
         steps.mix()
         times.append(times[-1] + steps.step)
         values.append(steps.survival())
-        if not -settings.unstable < values[-1] < 1 + settings.unstable:
+        if not -settings.unstable < np.real(values[-1]) < 1 + settings.unstable:
             raise UnstableError(f"a survival probability of {values[-1]:g}")
         if times[-1] >= per_length * steps.step and 2 * steps.step <= longest:
             steps.transport_half()

@@ -186,6 +186,7 @@ class Slabs:
     widest: float = 4.0  # chosen: decades of these z that have one part, ...
     parts: int = 3  # chosen: ... which is divided into so many for the first basis
     similar: float = 8.0  # chosen: longest over shortest of the intervals that share a basis
+    changed: float = 0.1  # chosen: part of a parameter by which the solutions of a basis differ
 
 
 class Basis(NamedTuple):

@@ -21,10 +21,11 @@ class CoefficientSteps(SplitStep):
     def __init__(self, grid: PlaneOrdinates, interval: Interval, step: float):
         many, columns = len(grid.speeds), np.ones(len(interval.kept))
         even, odd = grid.start[EVEN], grid.start[ODD]
-        whole = np.outer(grid.ones, columns)
+        dtype = np.result_type(grid.generator[EVEN].dtype, interval.forward)
+        whole = np.outer(grid.ones, columns).astype(dtype)
         start = np.array([even[:many] + odd[:many], even[:many] - odd[:many]]) / 2
         super().__init__(interval, grid.speeds, start, whole[:many], whole[:many].copy(), step)
-        self._still = {EVEN: whole[many:], ODD: np.zeros((len(odd) - many, len(columns)))}
+        self._still = {EVEN: whole[many:], ODD: np.zeros((len(odd) - many, len(columns)), dtype)}
         self._still_start = {EVEN: even[many:], ODD: odd[many:]}
         with np.errstate(over="ignore", invalid="ignore"):  # is found to be unstable
             self._mixing = {
@@ -46,7 +47,7 @@ class CoefficientSteps(SplitStep):
         super().doubled()
         self._mixing = {parity: matrix @ matrix for parity, matrix in self._mixing.items()}
 
-    def survival(self) -> float:
+    def survival(self) -> complex:
         """Return q at x = 0 and the start of the state, after half a transport."""
         still = (self._still_start[p] @ (self._still[p] @ self.interval.kept) for p in (EVEN, ODD))
         return super().survival() + sum(still)

@@ -3,15 +3,20 @@
 q is the probability that x + int g stays inside of an interval: q = 0 where the flow of g leaves.
 For odd g and drift, q of an interval at (x, Z) is q of its mirror image at (-x, -Z). So the state
 needs pairs of nodes, Z and -Z, and an interval that is its own mirror image only its nodes x > 0.
+
+A change of A or of the interval may be put into the imaginary part, times `IMAGINARY`. Then q
+follows in complex numbers, and its imaginary part is the derivative times `IMAGINARY`: what is of
+second order is far below rounding. See Squire and Trapp, SIAM Review 40 (1998), 110.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from nonsmooth.linear_algebra import dense
 
+IMAGINARY = 1e-30j
 _DIGITS = 12  # to which two speeds are the same
 
 
@@ -38,6 +43,11 @@ class Interval:
     def kept(self) -> np.ndarray:
         """The part of `row` for the nodes on which q is kept."""
         return self.row[len(self.row) // 2 :] if self.symmetric else self.row
+
+    def stretched(self, part: float) -> "Interval":
+        """Make it longer by a part of its length, times `IMAGINARY`."""
+        longer = 1 + part * IMAGINARY
+        return replace(self, forward=self.forward / longer, backward=self.backward / longer)
 
     def flow(self, way: float) -> np.ndarray:
         """Matrix, to be applied from the right, of the transport by a way of either sign."""
@@ -111,7 +121,7 @@ class SplitStep(ABC):
         """Move by g for half a step, at first and around a change of the step."""
         self._transport(self.there, self.opposite, self._rows, self._half)
 
-    def survival(self) -> float:
+    def survival(self) -> complex:
         """Return q at x = 0 and the start of the state, after half a transport."""
         seen = self.there[self._seen], self.opposite[self._seen]
         self._transport(*seen, self._seen_rows, self._half)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import sympy
 
-from nonsmooth.grids.generator import assemble, evaluate, start_row
-from nonsmooth.kinetic.marching.split_step import Interval, SplitStep
+from nonsmooth.grids.generator import Change, assemble, evaluate, start_row
+from nonsmooth.kinetic.marching.split_step import IMAGINARY, Interval, SplitStep
 from nonsmooth.kinetic.ordinates_plane import axes
 from nonsmooth.kinetic.tuning import PlaneLevel
 from nonsmooth.linear_algebra import dense
@@ -46,13 +46,21 @@ class TensorOrdinates:
     rate: float
 
 
-def tensor_ordinates(scene: Scene, ends: dict, level: PlaneLevel, time: float) -> TensorOrdinates:
+def tensor_ordinates(
+    scene: Scene,
+    ends: dict,
+    level: PlaneLevel,
+    time: float,
+    change: Change | None = None,
+) -> TensorOrdinates:
     """Discretise a scene with two state variables, finite n, odd drift and odd g.
 
     Parameters
     ----------
     scene, ends, level, time
         As for `ordinates_plane.plane_ordinates`.
+    change : Change, optional
+        Of the scene; D and O get its `IMAGINARY` part, see `split_step`.
 
     Returns
     -------
@@ -70,6 +78,8 @@ def tensor_ordinates(scene: Scene, ends: dict, level: PlaneLevel, time: float) -
     blocks = {}
     for symbol in made:
         A = assemble(scene, made, {symbol})
+        if change is not None:
+            A = A + IMAGINARY * assemble(scene, made, {symbol}, change)
         lines = nodes if symbol == scene.noise.driven else nodes.T
         blocks[symbol] = np.array([A[line][:, line].toarray() for line in lines])
     driven = blocks.pop(scene.noise.driven)
@@ -112,7 +122,8 @@ class TensorSteps(SplitStep):
 
     def __init__(self, grid: TensorOrdinates, interval: Interval, step: float):
         pairs = grid.speeds.size // 2
-        self._values = np.ones((*grid.speeds.shape, len(interval.kept)))
+        dtype = np.result_type(grid.driven, interval.forward)
+        self._values = np.ones((*grid.speeds.shape, len(interval.kept)), dtype)
         self._spare = np.empty_like(self._values)
         flat = self._values.reshape(2 * pairs, -1)
         start = grid.start.reshape(2, pairs)

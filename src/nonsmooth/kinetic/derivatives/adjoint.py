@@ -16,8 +16,8 @@ products of exponentials. On the nodes this is the derivative of what `case_mode
 import numpy as np
 
 from nonsmooth.grids.solver import EVEN
-from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.case_modes import modes
+from nonsmooth.kinetic.derivatives.exponentials import against, along
 from nonsmooth.kinetic.ordinates_line import ChangeOfOrdinates, Ordinates
 
 
@@ -172,22 +172,7 @@ class Adjoint:
         In h the modes of the upper wall fall from the upper end, in w from the lower one, and those
         of the lower wall the other way.
         """
-        first, second = self._rates[:, None], self._rates
-        if np.isinf(length):
-            found = 1 / (first + second)
-            found[: self._many, : self._many] = found[self._many :, self._many :] = 0.0
-            return found
-        fall = np.exp(-self._rates * length)
-        found = (1 - fall[:, None] * fall) / (first + second)
+        found = along(self._rates, length)
         for same in (slice(None, self._many), slice(self._many, None)):
-            found[same, same] = _against(self._rates[same], length, fall[same])
+            found[same, same] = against(self._rates[same], length)
         return found
-
-
-def _against(rates, length, fall):
-    """Integrals of exp(-r s) exp(-q (length - s)), 0 < s < length, for all pairs of rates."""
-    apart = rates[:, None] - rates
-    middle = np.exp(-(rates[:, None] + rates) / 2 * length)
-    near = np.abs(apart) * length < tuning.ADJOINT.near
-    near_value = length * middle * (1 + (apart * length) ** 2 / 24)
-    return np.where(near, near_value, (fall - fall[:, None]) / np.where(near, 1.0, apart))
