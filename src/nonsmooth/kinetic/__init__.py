@@ -17,7 +17,7 @@ and doubling of slabs finds. The manual page is
 - `ordinates_plane.plane_ordinates`, `ordinates_gibbs.gibbs_ordinates`: nodes of two, in general
   and where the invariant density is known.
 - `case_modes.modes`: elementary solutions, for one variable.
-- `adjoint.Adjoint`: derivatives of the transform, by the adjoint equation.
+- `derivatives`: of the transform with respect to parameters.
 - `adding_doubling.slabs`, `adding_doubling.fields`: reflection and transmission, and solutions at
   many depths, for two.
 - `reduced_ordinates.reduced`: the basis that they span, and the transform in it.

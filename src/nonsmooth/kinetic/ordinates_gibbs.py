@@ -143,7 +143,7 @@ class _Motion:
 
 
 def _change_of_motion(scene, elements, scale, change):
-    """Derivative of the generator, in the polynomials and elements of the scene.
+    """Differentiate the generator, in the polynomials and elements of the scene.
 
     d_y lowers a degree by its root over s. So y d_y keeps it, and lowers it by two.
     """

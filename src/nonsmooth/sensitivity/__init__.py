@@ -2,8 +2,9 @@
 
 - `gamma2.asymptotic_variance_sensitivity`: of gamma^2, by the differentiated equations.
 - `crossing.crossing_sensitivity`: of crossing probabilities, also by threshold and p.
-- `first_passage`, `differences`, `sampled`: the same of a `questions.Question`, by the adjoint
-  equation, by differences of solutions and by paths with common noise.
+- `first_passage`, `plane`, `differences`, `sampled`: the same of a `questions.Question`, by the
+  differentiated equations of one and of two variables, by differences of solutions and by paths
+  with common noise.
 - `line.elasticity`, `grids.elasticity`: with one state variable, and with more.
 - `parameters`: the parameters, and the derivatives of a scene's equations.
 - `tuning`: numbers that were chosen.

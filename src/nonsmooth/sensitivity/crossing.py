@@ -45,10 +45,11 @@ def crossing_sensitivity(
         C_b, the penalization, the intensity of the noise, the threshold, or the scale. Of a pair of
         levels both move outwards by the same distance.
     method : {"deterministic", "monte_carlo"}, optional
-        ``"deterministic"`` differentiates the transform of the crossing time, by its adjoint
-        equation. It is chosen for one state variable. Where this has no answer, as for starts far
-        in the tails, and for two variables where `crossing_probability` solves them, it takes
-        differences of high order of solved probabilities; six of two variables take minutes.
+        ``"deterministic"`` differentiates the equations, with one state variable by the adjoint
+        one, and is chosen for one. With two it serves where `crossing_probability` solves them.
+        Where this has no answer, as for starts far in the tails, or with two variables for a g that
+        changes with the parameter, it takes differences of high order of solved probabilities,
+        which take minutes with two.
         ``"monte_carlo"`` is chosen for all others and if `tol` is so loose that it is faster; it
         takes differences of paths that share their noise.
     tol : float, optional
@@ -63,9 +64,9 @@ def crossing_sensitivity(
     -------
     xarray.Dataset
         `derivative` and `derivative_error` over `horizon`. The error of ``"deterministic"`` is what
-        finer grids and other fits change; of differences it is what another order changes, and the
-        errors of the solutions. By Monte Carlo it is the standard error with the biases of the
-        difference and of the time step.
+        finer grids and other fits change, the largest of all times that they serve; of differences
+        it is what another order changes, and the errors of the solutions. By Monte Carlo it is the
+        standard error with the biases of the difference and of the time step.
 
     Raises
     ------
@@ -108,9 +109,9 @@ def crossing_sensitivity(
 
 
 def _solved(question, parameter, tol):
-    """Solve the adjoint equation; take differences where it has no answer, or not to a tolerance.
+    """Differentiate the equations; take differences where this does not meet the tolerance.
 
-    It has none where its modes are rounded, and few digits where W has fronts.
+    Of one variable it has no answer where modes are rounded, and few digits where W has fronts.
     """
     refusals = []
     solvers = [differences]

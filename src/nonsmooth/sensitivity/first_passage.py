@@ -1,8 +1,9 @@
 """Derivatives of crossing probabilities with one state variable, by the adjoint kinetic equation.
 
-The Laplace transform of the crossing time is differentiated at each place z (`kinetic.derivatives.adjoint`) and
-inverted like the transform itself: one solution, where a difference takes several. The derivative
-is small where the probability is, so that one vertical line serves all times.
+The Laplace transform of the crossing time is differentiated at each place z
+(`kinetic.derivatives.adjoint`) and inverted like the transform itself: one solution, where a
+difference takes several. The derivative is small where the probability is, so that one vertical
+line serves all times.
 """
 
 from collections.abc import Callable

@@ -7,6 +7,7 @@ like those of the probability.
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 import sympy
@@ -16,7 +17,6 @@ from nonsmooth.crossing.first_passage import tuning as of_first_passage
 from nonsmooth.crossing.first_passage.distribution import Together
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.plane import PlaneProblem, SharedGrids
-from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.generator import Change
 from nonsmooth.kinetic.derivatives.reduced import differentiated
 from nonsmooth.kinetic.marching.split_step import IMAGINARY
@@ -63,33 +63,31 @@ def logarithmic_derivative(
     together = Together(scene, np.array([levels]), times, _change(question, parameter))
     early = together.early[0]
     value, error = np.zeros(len(times)), np.full(len(times), np.inf)
-    for here, parts, solver in (
-        (early, of_first_passage.STEPPED_PARTS, _by_steps),
-        (~early, together.problem(0, times).resolutions, _by_contours),
-    ):
-        if here.any():
+    by_steps = of_first_passage.STEPPED_PARTS, _by_steps
+    by_contours = together.problem(0, times).resolutions, _by_contours
+    for here, solvers in ((early, (by_steps, by_contours)), (~early, (by_contours,))):
+        for parts, solver in solvers:
+            if not np.any(error[here] > tol):
+                break
             grids = together.grids(tuple(times[here]))
             problem = _Problem(scene, *levels, times[here], grids, moves)
-            value[here], error[here] = _refined(problem, times[here], parts, solver, tol)
+            with suppress(UnstableError):
+                found, stated = _refined(problem, times[here], parts, solver, tol)
+                if stated < np.max(error[here]):
+                    value[here], error[here] = found, stated
     if np.any(error > tol):
         raise missed(parameter, tol, value, error)
     return value, error
 
 
 def _refined(problem, times, parts, solver, tol):
-    """Refine each part of the resolution by itself; return the derivative and its error."""
+    """Refine each part of the resolution by itself; return the derivative and its largest error."""
 
-    def stated(found):
-        error = np.max(found.change) + of_first_passage.PLANE.unseen_error
-        return found.value[0], np.full(len(times), error)
+    def error(found):
+        return float(np.max(found.change)) + of_first_passage.PLANE.unseen_error
 
-    try:
-        found = refine_each_part(
-            parts, solver(problem, times), lambda found: np.all(stated(found)[1] <= tol), tol
-        )
-    except UnstableError as unstable:
-        raise ToleranceError(f"{unstable}; use method='monte_carlo'") from None
-    return stated(found)
+    found = refine_each_part(parts, solver(problem, times), lambda found: error(found) <= tol, tol)
+    return found.value[0], error(found)
 
 
 class _Problem(PlaneProblem):
@@ -124,7 +122,7 @@ class _Problem(PlaneProblem):
 
 
 def _by_contours(problem, times):
-    """Derivative, and that of the survival probability, by contours; takes resolutions."""
+    """Return what inverts the derivative on contours; its second row is that of the survival."""
     solve = plane.inverted(problem, times)
 
     def solved(resolution):
@@ -135,29 +133,24 @@ def _by_contours(problem, times):
 
 
 def _by_steps(problem, times):
-    """Derivative, and that of the survival probability, by steps; takes resolutions."""
-    distances = np.array([-problem.lower, problem.upper])
-    finite = np.isfinite(distances)
-    stretches = (problem.moves / distances)[finite]
-    if stretches[0] != stretches[-1]:
-        raise ToleranceError("steps take levels that change by the same factor alone")
-    solve = time_stepping.stepped(problem, times, float(stretches[0]))
+    """Return what takes steps of the derivative; its second row is that of the survival."""
+    solve = time_stepping.stepped(problem, times, problem.moves)
     return lambda resolution: (solve(resolution) / IMAGINARY).real
 
 
 def _moves(question, parameter):
-    """Derivatives of the distances of both levels from 0 by the logarithm of a parameter."""
+    """Differentiate the distances of both levels from 0 by the logarithm of a parameter."""
     distances = np.array([-question.lower, question.upper]) * np.sqrt(question.p)
     finite = np.isfinite(distances)
     if parameter == "threshold":  # both move outwards by the same distance
-        return tuple(np.where(finite, distances.min(), 0.0))
+        return tuple(np.where(finite, distances.min(), 0.0).tolist())
     if parameter == "p":
-        return tuple(np.where(finite, distances, 0.0) * -0.5)
+        return tuple((-np.where(finite, distances, 0.0) / 2).tolist())
     return 0.0, 0.0
 
 
 def _change(question, parameter):
-    """Derivative of the scene's equations by the logarithm of a parameter; None if there is none.
+    """Differentiate the equations by the logarithm of a parameter; None if they do not change.
 
     The scale p makes levels grow like its root and time run p times as fast. In the time of T the
     generator has the factor p, and int g the factor p over the root.

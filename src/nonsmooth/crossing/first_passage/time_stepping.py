@@ -19,13 +19,13 @@ from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.grids.elements import discontinuous
 from nonsmooth.grids.grading import graded, split
 from nonsmooth.kinetic.marching.coefficients import CoefficientSteps
-from nonsmooth.kinetic.marching.split_step import Interval
+from nonsmooth.kinetic.marching.split_step import IMAGINARY, Interval
 from nonsmooth.kinetic.marching.tensor import TensorSteps
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, UnstableError
 
 
 def stepped(
-    problem: PlaneProblem, times: np.ndarray, stretch: float = 0.0
+    problem: PlaneProblem, times: np.ndarray, moves: tuple[float, float] = (0.0, 0.0)
 ) -> Callable[[tuple], np.ndarray]:
     """Prepare the steps.
 
@@ -34,8 +34,9 @@ def stepped(
     problem : PlaneProblem
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
-    stretch : float
-        Derivative of the logarithm of both levels, for the imaginary part.
+    moves : tuple of float
+        Derivatives of the distances of the lower and of the upper level from 0, for the imaginary
+        part; 0 for an infinite one.
 
     Returns
     -------
@@ -47,6 +48,7 @@ def stepped(
     """
     settings, damping, last = tuning.TIME_STEPPING, problem.scene.damping, times[-1]
     duration, way = problem.mean_duration(), problem.grids.way
+    stretch, shift = _stretched(problem.levels, moves)
     spread = way * damping * min(last, math.sqrt(settings.slow * last / damping))
     if problem.largest_probability(last) < tuning.PLANE.least_probability:
         nothing = np.array([0.0 * times, 1.0 + 0.0 * times])
@@ -62,6 +64,7 @@ def stepped(
             finest * min(way, -problem.lower, problem.upper),
             widest,
             settings.reached / math.sqrt(min(step, 1.0)) * spread,
+            shift,
         )
         first = step * settings.first * min(duration, settings.early / damping)
         if stretch:
@@ -75,11 +78,12 @@ def stepped(
     return solve
 
 
-def _interval(lower, upper, degree, finest, widest, reach):
+def _interval(lower, upper, degree, finest, widest, reach, shift):
     """Make elements in x, of a degree, graded towards the thresholds.
 
     `finest` and `widest` are the smallest element, next to a threshold, and the largest over the
-    distance of a threshold; where there is none, the elements end at `reach`.
+    distance of a threshold; where there is none, the elements end at `reach`. The start moves to
+    `shift`, times `IMAGINARY`.
     """
     above = _towards(upper, finest, widest, reach, -lower)
     below = _towards(-lower, finest, widest, reach, upper)
@@ -94,8 +98,20 @@ def _interval(lower, upper, degree, finest, widest, reach):
         (axis.slope + lift @ axis.jump).toarray()[inner, inner]
         for lift in (axis.lift_left, axis.lift_right)
     )
-    row = axis.interpolation(0.0).toarray()[0, inner]
+    row = axis.interpolation(0.0)
+    if shift:
+        row = row + IMAGINARY * shift * (row @ axis.slope)
+    row = row.toarray()[0, inner]
     return Interval(forward, backward, row, lower == -upper)
+
+
+def _stretched(levels, moves):
+    """Stretch of the interval about 0, and shift of the start in it, that move its levels."""
+    (lower, upper), (below, above) = levels, moves
+    if not np.isfinite([lower, upper]).all():
+        return (above / upper if math.isfinite(upper) else -below / lower), 0.0
+    stretch = (below + above) / (upper - lower)
+    return stretch, below + lower * stretch
 
 
 def _towards(wall, finest, widest, reach, other):
@@ -123,7 +139,7 @@ def _survival(steps, longest, per_length, last):
         times.append(times[-1] + steps.step)
         values.append(steps.survival())
         if not -settings.unstable < np.real(values[-1]) < 1 + settings.unstable:
-            raise UnstableError(f"a survival probability of {values[-1]:g}")
+            raise UnstableError(f"a survival probability of {np.real(values[-1]):g}")
         if times[-1] >= per_length * steps.step and 2 * steps.step <= longest:
             steps.transport_half()
             steps.doubled()

@@ -80,7 +80,7 @@ class _Solution:
         self._fall = modes.left(up), modes.left(down)
 
     def by_levels(self, down, up):
-        """Both distances change."""
+        """Differentiate by a change of both distances."""
         modes, strengths = self._modes, self._strengths
         moved = modes.rates * strengths
         at_wall = self._at_wall(modes.left(self._down + self._up) * moved) * (down + up)
@@ -88,19 +88,19 @@ class _Solution:
         return modes.value(above * (at_wall - up * moved), below * (at_wall - down * moved))
 
     def by_rows(self, even, odd):
-        """The interpolation at the start changes."""
+        """Differentiate by a change of the interpolation at the start."""
         modes, (above, below) = self._modes, (fall * self._strengths for fall in self._fall)
         return even @ modes.even @ (above + below) + odd @ modes.odd @ (above - below)
 
     def by_matrices(self, even, odd):
-        """E and O change."""
+        """Differentiate by a change of E and O."""
         modes, strengths, (above, below) = self._modes, self._strengths, self._fall
         first = np.linalg.solve(modes.odd, even @ modes.even)
         second = np.linalg.solve(modes.even, odd @ modes.odd)
         same, other = (first + second) / 2, (first - second) / 2
 
         def arriving(length, falling):
-            """What the sources within a length add up to; `falling` is left of the other wall."""
+            """Add up the sources within a length; `falling` is left of the other wall."""
             return (same * against(modes.rates, length)) @ strengths + (
                 other * along(modes.rates, length)
             ) @ (falling * strengths)

@@ -45,7 +45,7 @@ class Interval:
         return self.row[len(self.row) // 2 :] if self.symmetric else self.row
 
     def stretched(self, part: float) -> "Interval":
-        """Make it longer by a part of its length, times `IMAGINARY`."""
+        """Stretch it about x = 0 by a part, times `IMAGINARY`."""
         longer = 1 + part * IMAGINARY
         return replace(self, forward=self.forward / longer, backward=self.backward / longer)
 

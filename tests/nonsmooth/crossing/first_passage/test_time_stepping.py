@@ -6,6 +6,7 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage.plane import PlaneProblem, inverted, tame
 from nonsmooth.crossing.first_passage.time_stepping import stepped
+from nonsmooth.kinetic.marching.split_step import IMAGINARY
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 
 TOLERANCE = 5e-3  # what coarse grids reach, and worth comparing
@@ -26,6 +27,26 @@ def test_marching_agrees_with_the_transform():
     ) + sum(np.abs(invert(at) - transformed) for at in [(2, 1, 1, 1), (1, 2, 1, 1), (1, 1, 0, 1)])
     assert np.all(np.abs(marched - transformed) <= 2 * allowed + 1e-5)
     assert np.max(allowed) < TOLERANCE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("levels", "moves"), [((-np.inf, 0.3), (0.0, 1.0)), ((-0.2, np.inf), (1.0, 0.0))], ids=str
+)
+def test_imaginary_parts_are_derivatives_by_the_levels(levels, moves):
+    """On one resolution, against differences of intervals with elements of their own.
+
+    These are coarse, and 2 % is left to what they miss.
+    """
+    times, spacing = np.array([1.2]), 1e-3
+
+    def probability(way):
+        moved = levels[0] - way * moves[0], levels[1] + way * moves[1]
+        return stepped(PlaneProblem(OBSTACLE, *moved, times), times)((1, 1, 1, 1))[0, 0]
+
+    found = stepped(PlaneProblem(OBSTACLE, *levels, times), times, moves)((1, 1, 1, 1))[0, 0]
+    expected = (probability(spacing) - probability(-spacing)) / (2 * spacing)
+    assert (found / IMAGINARY).real == pytest.approx(expected, rel=0.02)
 
 
 @pytest.mark.slow

@@ -7,8 +7,8 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.grids.solver import EVEN
-from nonsmooth.kinetic.derivatives.adjoint import Adjoint
 from nonsmooth.kinetic.case_modes import modes
+from nonsmooth.kinetic.derivatives.adjoint import Adjoint
 from nonsmooth.kinetic.ordinates_line import Change, changed, ordinates
 from references import FRICTION
 

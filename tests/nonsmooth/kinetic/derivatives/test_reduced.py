@@ -53,7 +53,7 @@ def difference(function, spacing):
 
 @pytest.fixture(scope="module", params=SCENES)
 def ordinates(request):
-    """A few ordinates of a grid that knows how its generator changes with the damping."""
+    """Make few ordinates of a grid that knows how its generator changes with the damping."""
     scene = SCENES[request.param]
     return basis(coarse_ordinates(scene, change(scene, "damping")))
 
@@ -107,8 +107,8 @@ class TestDifferentiated:
 def test_changes_of_the_scene(name, parameter):
     """The generator changes as that of the scene does, on grids of each scene of their own.
 
-    Both are wrong by what the coarse grids are wrong, up to 5 % of the derivative; a wrong factor or
-    sign would make far more.
+    Both are wrong by what the coarse grids are wrong, up to 5 % of the derivative; a wrong factor
+    or sign would make far more.
     """
     scene, z, levels = SCENES[name], 0.2 + 0.5j, (-0.6, 1.1)
     value = value_of(scene, parameter)
