@@ -9,7 +9,6 @@ from nonsmooth.central_differences import central
 from nonsmooth.grids.generator import Change
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.adding_doubling import fields
-from nonsmooth.kinetic.derivatives.exponentials import against, along
 from nonsmooth.kinetic.derivatives.reduced import differentiated
 from nonsmooth.kinetic.reduced_ordinates import reduced
 from nonsmooth.sensitivity.parameters import PARAMETERS, change, value_of
@@ -132,18 +131,3 @@ def test_time_that_runs_faster(name):
     for parity in (EVEN, ODD):
         A, found = grid.generator[parity].toarray(), grid.change[parity].toarray()
         assert np.abs(found - A).max() < 1e-12 * np.abs(A).max()
-
-
-@pytest.mark.parametrize("length", [0.3, np.inf])
-def test_integrals_of_exponentials(length):
-    """Against Gauss quadrature, also for rates that are nearly the same."""
-    rates = np.array([0.5, 0.5 + 1e-5, 2.0 + 1.0j])
-    s, weights = np.polynomial.legendre.leggauss(80)
-    end = min(length, 100.0)  # of which exp(-50) is left
-    s, weights = end * (s + 1) / 2, end * weights / 2
-    first, second = (np.exp(-np.outer(rates, at)) for at in (s, end - s))
-    assert np.allclose(along(rates, length), (first * weights) @ first.T, rtol=1e-9)
-    if np.isfinite(length):
-        assert np.allclose(against(rates, length), (first * weights) @ second.T, rtol=1e-9)
-    else:
-        assert not against(rates, length).any()
