@@ -96,13 +96,14 @@ class SplitStep(ABC):
         self.interval, self._start = interval, start
         scale = np.max(np.abs(speeds))
         distinct, which = np.unique(np.round(speeds / scale, _DIGITS), return_inverse=True)
-        moving = np.flatnonzero(distinct)
         self._seen = np.flatnonzero(np.any(start != 0, axis=0))
-        self._rows, self._seen_rows = (
-            [np.flatnonzero(part == k) for k in moving] for part in (which, which[self._seen])
-        )
-        self._half = [self._flows(step / 2 * scale * distinct[k]) for k in moving]
-        self._whole = [_squared(flows) for flows in self._half]
+        # speeds that have the same number of nodes are moved together
+        many = np.where(distinct != 0, np.bincount(which), 0)
+        groups = [np.flatnonzero(many == count) for count in np.unique(many[many > 0])]
+        self._rows = [np.array([np.flatnonzero(which == k) for k in group]) for group in groups]
+        self._half = [self._flows(step / 2 * scale * distinct[group]) for group in groups]
+        self._whole = [flows @ flows for flows in self._half]
+        self._weights = self._weights_of_survival()
 
     @abstractmethod
     def mix(self) -> None:
@@ -111,40 +112,45 @@ class SplitStep(ABC):
     def doubled(self) -> None:
         """Make the step twice as long."""
         self.step *= 2
-        self._half, self._whole = self._whole, [_squared(flows) for flows in self._whole]
+        self._half, self._whole = self._whole, [flows @ flows for flows in self._whole]
+        self._weights = self._weights_of_survival()
 
     def transport(self) -> None:
         """Move by g for a step: half a step after `mix` and half a step before the next one."""
-        self._transport(self.there, self.opposite, self._rows, self._whole)
+        self._transport(self.there, self.opposite, self._whole)
 
     def transport_half(self) -> None:
         """Move by g for half a step, at first and around a change of the step."""
-        self._transport(self.there, self.opposite, self._rows, self._half)
+        self._transport(self.there, self.opposite, self._half)
 
     def survival(self) -> complex:
         """Return q at x = 0 and the start of the state, after half a transport."""
-        seen = self.there[self._seen], self.opposite[self._seen]
-        self._transport(*seen, self._seen_rows, self._half)
         return sum(
-            weights @ (values @ self.interval.kept)
-            for weights, values in zip(self._start[:, self._seen], seen, strict=True)
+            np.sum(weights * values[self._seen])
+            for weights, values in zip(self._weights, (self.there, self.opposite), strict=True)
         )
 
-    def _flows(self, way):
-        """For the nodes; unless the interval is symmetric, also for their mirror images."""
-        flow = self.interval.flow
-        return [flow(way)] if self.interval.symmetric else [flow(way), flow(-way)]
+    def _weights_of_survival(self):
+        """Weights of the values before half a transport in what the start sees after it.
 
-    def _transport(self, there, opposite, rows, flows):
+        The transport of the weights is the transposed one.
+        """
+        weights = self._start[:, :, None] * self.interval.kept
+        weights = weights.astype(np.result_type(weights, *self._half))
+        self._transport(*weights, [np.swapaxes(flows, -1, -2) for flows in self._half])
+        return weights[:, self._seen]
+
+    def _flows(self, ways):
+        """For the nodes; unless the interval is symmetric, also for their mirror images."""
+        sides = (1,) if self.interval.symmetric else (1, -1)
+        return np.array([[self.interval.flow(side * way) for way in ways] for side in sides])
+
+    def _transport(self, there, opposite, groups):
         """Move values in place; on a symmetric interval, those opposite are those at x < 0."""
         half = there.shape[1]
-        for at, flow in zip(rows, flows, strict=True):
+        for at, flows in zip(self._rows, groups, strict=True):
             if self.interval.symmetric:
-                values = np.hstack([opposite[at][:, ::-1], there[at]]) @ flow[0]
-                opposite[at], there[at] = values[:, :half][:, ::-1], values[:, half:]
+                values = np.concatenate([opposite[at][..., ::-1], there[at]], axis=-1) @ flows[0]
+                opposite[at], there[at] = values[..., half - 1 :: -1], values[..., half:]
             else:
-                there[at], opposite[at] = there[at] @ flow[0], opposite[at] @ flow[1]
-
-
-def _squared(matrices):
-    return [matrix @ matrix for matrix in matrices]
+                there[at], opposite[at] = there[at] @ flows[0], opposite[at] @ flows[1]
