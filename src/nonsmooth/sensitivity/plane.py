@@ -71,7 +71,8 @@ def logarithmic_derivative(
                 break
             grids = together.grids(tuple(times[here]))
             problem = _Problem(scene, *levels, times[here], grids, moves)
-            with suppress(UnstableError):
+            # grids of extreme scenes may have no finite modes, or grow
+            with suppress(UnstableError, np.linalg.LinAlgError), np.errstate(all="ignore"):
                 found, stated = _refined(problem, times[here], parts, solver, tol)
                 if stated < np.max(error[here]):
                     value[here], error[here] = found, stated
