@@ -7,28 +7,16 @@ and a table; `--first` is the first seed and `--scenes` how many.
 """
 
 import sys
-import time
 
 import numpy as np
 
 from benchmarks.plane_crossing_honesty import draw
-from benchmarks.seeds import compared
-from nonsmooth.errors import ToleranceError
+from benchmarks.sensitivity_honesty import tell, timed
 from nonsmooth.sensitivity import plane
 from nonsmooth.sensitivity.questions import Question
 
 TOLERANCE, FINER = 1e-2, 5.0  # the latter is the stated error over the finer tolerance
 PARAMETERS = "threshold", "p", "damping", "sigma", "n"
-
-
-def timed(question, parameter, tol):
-    """Return value, error and seconds; a refusal has the best."""
-    began = time.process_time()
-    try:
-        value, error = plane.logarithmic_derivative(question, parameter, tol)
-    except ToleranceError as refused:
-        value, error = refused.result
-    return value, error, time.process_time() - began
 
 
 def compare(seed):
@@ -37,9 +25,9 @@ def compare(seed):
     scene, interval, times = draw(rng)
     parameter = str(rng.choice([name for name in PARAMETERS if plane.applies(scene, name)]))
     question = Question(scene, *interval, times, 1.0)
-    value, error, seconds = timed(question, parameter, TOLERANCE)
+    value, error, seconds = timed(plane, question, parameter, TOLERANCE)
     finer = min(TOLERANCE, error.max()) / FINER
-    exact, uncertain, seconds_of_finer = timed(question, parameter, finer)
+    exact, uncertain, seconds_of_finer = timed(plane, question, parameter, finer)
     ratio = np.max(np.abs(value - exact) / (error + uncertain))
     yield {
         "model": scene.model,
@@ -54,19 +42,5 @@ def compare(seed):
     }
 
 
-def main(arguments):
-    """Compare and print the table."""
-    rows = compared(arguments, "stated against true errors of derivatives", compare)
-    table = rows.groupby("parameter", as_index=False).agg(
-        scenes=("ratio", "size"),
-        wrong=("ratio", lambda ratio: int(np.sum(ratio > 1))),
-        largest_ratio=("ratio", "max"),
-        missed=("missed", "sum"),
-        median_seconds=("seconds", "median"),
-        most_seconds=("seconds", "max"),
-    )
-    print(table.to_string(index=False, float_format="{:.2g}".format))
-
-
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    tell(sys.argv[1:], compare, "parameter")

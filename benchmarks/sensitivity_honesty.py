@@ -79,11 +79,10 @@ def compare(seed):
         }
 
 
-def main(arguments):
-    """Compare and print the table."""
+def tell(arguments, compare, by):
+    """Compare scenes of random seeds, and print a table grouped by columns of the rows."""
     rows = compared(arguments, "stated against true errors of derivatives", compare)
-    table = rows.groupby(["method", "tol"], as_index=False)
-    table = table.agg(
+    table = rows.groupby(by, as_index=False).agg(
         scenes=("ratio", "size"),
         wrong=("ratio", lambda ratio: int(np.sum(ratio > 1))),
         largest_ratio=("ratio", "max"),
@@ -95,4 +94,4 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    tell(sys.argv[1:], compare, ["method", "tol"])

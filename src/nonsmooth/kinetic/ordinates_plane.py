@@ -94,10 +94,21 @@ class Scattering:
 
     def applied(self, values: np.ndarray) -> np.ndarray:
         """Apply it to functions on the nodes that move, the columns of an array."""
-        return self._matrix[: self._many] @ self._continued(values)
+        return self.at_moving(self.continued(values))
+
+    def continued(self, values: np.ndarray) -> np.ndarray:
+        """Continue functions on the nodes that move, columns of an array, to all nodes."""
+        if self._still is None:
+            return values
+        inside = self._still.solve(self._matrix[self._many :, : self._many] @ values)
+        return np.vstack([values, -inside])
+
+    def at_moving(self, continued: np.ndarray) -> np.ndarray:
+        """Apply it to functions that are `continued`."""
+        return self._matrix[: self._many] @ continued
 
     def derivative(
-        self, change: sp.sparray, tests: np.ndarray, values: np.ndarray
+        self, change: sp.sparray, tests: np.ndarray, continued: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Differentiate what it makes of functions, if A changes.
 
@@ -106,29 +117,22 @@ class Scattering:
         change : sparse array
             Derivative of A.
         tests : numpy.ndarray, shape (l, k)
-        values : numpy.ndarray, shape (k, m)
-            Functions on the nodes that move, in columns.
+        continued : numpy.ndarray
+            Functions that are `continued`, in m columns.
 
         Returns
         -------
         tested : numpy.ndarray, shape (l, m)
-            Derivative of `tests` @ `applied(values)`.
+            Derivative of `tests` @ `at_moving(continued)`.
         at_start : numpy.ndarray, shape (m,)
-            Derivative of `start_row()` @ `values`.
+            Derivative of the functions at the start.
         """
-        moving, still = np.split(change @ self._continued(values), [self._many])
+        moving, still = np.split(change @ continued, [self._many])
         if self._still is None:
-            return -tests @ moving, np.zeros(values.shape[1])
+            return -tests @ moving, np.zeros(continued.shape[1])
         across = self._matrix[: self._many, self._many :]
         inside = self._still.solve((across.T @ tests.T).astype(self._matrix.dtype), trans="T")
         return inside.T @ still - tests @ moving, self._start_inside() @ still
-
-    def _continued(self, values):
-        """Functions on all nodes."""
-        if self._still is None:
-            return values
-        inside = self._still.solve(self._matrix[self._many :, : self._many] @ values)
-        return np.vstack([values, -inside])
 
     def _start_inside(self):
         """Row of the start, to be applied to what the matrix makes of values at the others."""

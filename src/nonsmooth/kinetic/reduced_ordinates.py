@@ -47,7 +47,8 @@ class ReducedOrdinates:
         -------
         numpy.ndarray of complex, shape (m,)
         """
-        modes = self.modes(z)
+        eliminated = self.grid.eliminated(z)
+        modes = self.modes(eliminated, self.continued(eliminated))
         return np.array([modes.at_start(*interval) for interval in intervals])
 
     def functions(self, parity: int) -> np.ndarray:
@@ -58,20 +59,24 @@ class ReducedOrdinates:
         """Functions by which equations are tested, weighted by the masses; shape (r, k)."""
         return (self.grid.masses[:, None] * self.functions(parity)).T
 
-    def modes(self, z: complex, eliminated: dict | None = None) -> "ReducedModes":
+    def continued(self, eliminated: dict) -> dict:
+        """Continue the functions of each parity to all nodes, at the z of `eliminated`."""
+        return {p: part.continued(self.functions(p)) for p, part in eliminated.items()}
+
+    def modes(self, eliminated: dict, continued: dict) -> "ReducedModes":
         """Compute the modes.
 
         Parameters
         ----------
-        z : complex
-        eliminated : dict, optional
-            What `PlaneOrdinates.eliminated` returns for z, if it is known.
+        eliminated : dict
+            What `PlaneOrdinates.eliminated` returns for a place z.
+        continued : dict
+            What `continued` returns for it.
         """
-        parts, matrices, rows = eliminated or self.grid.eliminated(z), {}, {}
-        for parity, part in parts.items():
-            functions = self.functions(parity)
-            matrices[parity] = self.tests(parity) @ part.applied(functions)
-            rows[parity] = part.start_row() @ functions
+        matrices, rows = {}, {}
+        for parity, part in eliminated.items():
+            matrices[parity] = self.tests(parity) @ part.at_moving(continued[parity])
+            rows[parity] = part.start_row() @ self.functions(parity)
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
         rates, even = _modes(matrices[EVEN], matrices[ODD])
         odd = matrices[EVEN] @ even / rates

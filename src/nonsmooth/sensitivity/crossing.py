@@ -113,17 +113,17 @@ def _solved(question, parameter, tol):
 
     Of one variable it has no answer where modes are rounded, and few digits where W has fronts.
     """
-    refusals = []
-    solvers = [differences]
-    if first_passage.applies(question.scene):
-        solvers.insert(0, first_passage)
-    elif plane.applies(question.scene, parameter):
-        solvers.insert(0, plane)
-    for solver in solvers:
-        try:
-            return solver.logarithmic_derivative(question, parameter, tol)
-        except ToleranceError as refused:
-            refusals.append(refused)
+    refusals, scene = [], question.scene
+    for solver, serves in (
+        (first_passage, first_passage.applies(scene)),
+        (plane, plane.applies(scene, parameter)),
+        (differences, True),
+    ):
+        if serves:
+            try:
+                return solver.logarithmic_derivative(question, parameter, tol)
+            except ToleranceError as refused:
+                refusals.append(refused)
     raise min(refusals, key=_worst_error)
 
 

@@ -43,8 +43,7 @@ def stepped(
     callable
         Takes the resolutions of the grid, driven and other variable, of x and of time; returns
         probability and survival probability, shape (2, k); their derivatives times `IMAGINARY` are
-        the imaginary parts, see `split_step`. Raises `UnstableError` if the solution
-        grows.
+        the imaginary parts, see `split_step`. Raises `UnstableError` if the solution grows.
     """
     settings, damping, last = tuning.TIME_STEPPING, problem.scene.damping, times[-1]
     duration, way = problem.mean_duration(), problem.grids.way

@@ -44,7 +44,8 @@ def differentiated(
     complex
     """
     eliminated = ordinates.grid.eliminated(z)
-    modes, (lower, upper) = ordinates.modes(z, eliminated), levels
+    continued = ordinates.continued(eliminated)
+    modes, (lower, upper) = ordinates.modes(eliminated, continued), levels
     if np.isinf(upper):
         modes, side = modes.mirrored(), -1
         solution = _Solution(modes, np.inf, -lower)
@@ -55,9 +56,7 @@ def differentiated(
     if ordinates.grid.change is None:
         return value
     (even, even_row), (odd, odd_row) = (
-        eliminated[p].derivative(
-            ordinates.grid.change[p], ordinates.tests(p), ordinates.functions(p)
-        )
+        eliminated[p].derivative(ordinates.grid.change[p], ordinates.tests(p), continued[p])
         for p in (EVEN, ODD)
     )
     return value + solution.by_matrices(even, odd) + solution.by_rows(even_row, side * odd_row)
