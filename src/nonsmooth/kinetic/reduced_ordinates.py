@@ -158,27 +158,20 @@ def reduced(grid: PlaneOrdinates, fields: np.ndarray, accuracy: float) -> Reduce
     return ReducedOrdinates(grid, np.column_stack([ones, kept]) / flow[:, None])
 
 
+def unreduced(grid: PlaneOrdinates) -> ReducedOrdinates:
+    """Take all ordinates."""
+    return ReducedOrdinates(grid, np.diag(1 / np.sqrt(grid.masses * np.abs(grid.speeds))))
+
+
 def _modes(even, odd):
     """Rates and even parts of the modes, which change in x as exp(rate x).
 
-    Rates squared are eigenvalues of a product, and lie many decades apart. Rounding spoils those
-    far below the largest; the inverse of the product has these, and spoils the large ones. Both
-    lists are put together where they agree and leave the widest gap.
+    Rates squared are eigenvalues of O E and lie many decades apart. They are taken from its
+    inverse: rounding spoils the fastest ones then, which are seen next to the walls only.
     """
-    fast, fast_modes = _ascending(odd @ even, 1)
-    slow, slow_modes = _ascending(np.linalg.solve(even, np.linalg.inv(odd)), -1)
-    with np.errstate(divide="ignore", invalid="ignore"):  # what is not a number does not agree
-        agree = np.abs(slow / fast - 1) < tuning.REDUCED_ORDINATES.agree
-        ratios = np.abs(fast[1:] / fast[:-1])
-    gaps = np.where(agree[1:] & agree[:-1], ratios, 0.0)
-    cut = 1 + int(np.argmax(gaps)) if len(gaps) else 1  # constants alone have one mode
-    squares = np.append(slow[:cut], fast[cut:])
-    return np.sqrt(squares), np.hstack([slow_modes[:, :cut], fast_modes[:, cut:]])
-
-
-def _ascending(matrix, power):
-    """Eigenvalues, raised to a power, in ascending order, and eigenvectors."""
-    values, vectors = np.linalg.eig(matrix)
-    values = values.astype(complex) ** power
-    order = np.argsort(np.abs(values))
-    return values[order], vectors[:, order].astype(complex)
+    inverse = np.linalg.solve(even, np.linalg.inv(odd))
+    values, modes = np.linalg.eig(inverse)
+    rates = 1 / np.sqrt(values.astype(complex))
+    # a mode that is rounding has any phase, but decays at once
+    spoiled = np.abs(values) < tuning.REDUCED_ORDINATES.rounding * np.abs(values).max()
+    return np.where(spoiled, np.abs(rates), rates), modes

@@ -121,21 +121,21 @@ class GibbsLevel(NamedTuple):
 
 
 @dataclass(frozen=True)
-class AddingDoubling:
-    """Slabs that are put together."""
+class Fields:
+    """Solutions at many depths, from which a basis is taken."""
 
-    fewest: int = 6  # chosen: doublings, at least
+    per_octave: int = 2  # chosen: depths within a factor of 2
+    even: int = 8  # chosen: depths that are equally far apart
+    decayed: float = 18.0  # chosen: no depth is beyond exp(-18) of the slowest mode
     # chosen: size of a transform, which is between 0 and 1, that shows an unstable grid
     unstable: float = 5.0
-    opaque: float = 1e-4  # chosen: transmission of a slab that is as good as a half space
-    resolved: int = 4  # chosen: how often a slab is halved everywhere, not only at its faces
 
 
 @dataclass(frozen=True)
 class ReducedOrdinates:
     """Modes of few ordinates."""
 
-    agree: float = 1e-4  # chosen: relative difference up to which two eigenvalues are the same
+    rounding: float = 1e-14  # derived: ratio of eigenvalues below which they are rounding
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ LINE_ORDINATES = LineOrdinates()
 CASE_MODES = CaseModes()
 ADJOINT = Adjoint()
 PLANE_ORDINATES = PlaneOrdinates()
-ADDING_DOUBLING = AddingDoubling()
+FIELDS = Fields()
 REDUCED_ORDINATES = ReducedOrdinates()
 TAIL_DESCENT = TailDescent()
 TAIL_EQUATION = TailEquation()

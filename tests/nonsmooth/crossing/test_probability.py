@@ -8,7 +8,7 @@ import nonsmooth as ns
 from nonsmooth.crossing.first_passage import line, plane
 from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.adding_doubling import fields
+from nonsmooth.kinetic.fields import fields
 from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates
 from references import COLORED_FRICTION, FRICTION, GAMMA2, OBSTACLE, SKEWED, W_STAR
 
@@ -240,16 +240,16 @@ def test_one_more_threshold_costs_little(monkeypatch):
 
 
 @pytest.mark.slow
-def test_thresholds_of_two_variables_share_slabs_and_contours(monkeypatch):
-    """Two take no more slabs than the one that takes most, and hardly more modes.
+def test_thresholds_of_two_variables_share_fields_and_contours(monkeypatch):
+    """Two take no more solutions than the one that takes most, and hardly more modes.
 
-    Each slab is solved for halves, too. Modes are those of all places of all contours, of which
-    several levels may need a few more.
+    Modes of all nodes serve halves, too. Those in a basis are taken at all places of all contours,
+    of which several levels may need a few more.
     """
-    slabs, modes, transform = [], [], ReducedOrdinates.first_passage
+    solutions, modes, transform = [], [], ReducedOrdinates.first_passage
 
     def counted(grid, *arguments):
-        slabs.append(len(grid.speeds) ** 3)
+        solutions.append(len(grid.speeds) ** 3)
         return fields(grid, *arguments)
 
     def transformed(ordinates, *arguments):
@@ -260,12 +260,12 @@ def test_thresholds_of_two_variables_share_slabs_and_contours(monkeypatch):
     monkeypatch.setattr(ReducedOrdinates, "first_passage", transformed)
     thresholds, work = [0.15, 0.25], []
     for asked in (thresholds, *thresholds):
-        slabs.clear()
+        solutions.clear()
         modes.clear()
         ns.crossing_probability(
             COLORED_FRICTION, asked, [2.0], p=100, method="deterministic", tol=1e-3
         )
-        work.append((sum(slabs), sum(modes)))
+        work.append((sum(solutions), sum(modes)))
     (together, *_), alone = work, np.max(work[1:], axis=0)
     assert together[0] <= alone[0]
     assert together[1] <= 1.5 * alone[1]

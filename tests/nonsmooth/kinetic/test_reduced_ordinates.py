@@ -1,7 +1,6 @@
 """A few ordinates in place of many: against exact modes, limits, and all ordinates."""
 
 import math
-from itertools import islice
 
 import numpy as np
 import pytest
@@ -10,12 +9,13 @@ import scipy.sparse as sp
 import nonsmooth as ns
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.adding_doubling import fields, slabs
+from nonsmooth.kinetic.fields import fields
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
 from nonsmooth.kinetic.reduced_ordinates import reduced
 from nonsmooth.kinetic.tuning import PlaneLevel
 from references import COLORED_FRICTION, FRICTION, OBSTACLE, PLASTIC_STRAIN
+from slabs import slab
 from support import coarse_ordinates
 
 SCENES = {"friction": COLORED_FRICTION, "plastic": PLASTIC_STRAIN, "obstacle": OBSTACLE}
@@ -100,9 +100,9 @@ class TestReducedOrdinates:
         doublings = math.ceil(math.log2(end / grid.way)) + 10
         found = []
         for more in (0, 1):
-            *_, made = islice(slabs(grid, z, end / 2 ** (doublings + more)), doublings + more + 1)
-            inside = np.eye(len(ones)) - made.reflection
-            found.append(row @ np.linalg.solve(inside, made.transmission @ ones))
+            reflection, transmission = slab(grid, z, end, doublings + more)
+            inside = np.eye(len(ones)) - reflection
+            found.append(row @ np.linalg.solve(inside, transmission @ ones))
         few = passage(basis(grid, 2 * end), z, -end, end)
         assert abs(few - found[1]) < abs(found[1] - found[0]) / (math.sqrt(2) - 1) + 2e-6
 

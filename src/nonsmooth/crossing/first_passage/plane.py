@@ -17,7 +17,7 @@ from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, in_comm
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.generator import Change
 from nonsmooth.kinetic import ordinates_gibbs
-from nonsmooth.kinetic.adding_doubling import fields
+from nonsmooth.kinetic.fields import fields
 from nonsmooth.kinetic.marching.split_step import IMAGINARY
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
@@ -217,25 +217,27 @@ class SharedGrids:
         return self._reduced[key]
 
     def _fields(self, driven, other, basis):
-        """Solutions in the slab and in its halves for the z of a basis."""
-        thin = tuning.BASES[basis].thin
-        return [self._field(driven, other, z, thin) for z in self._shifts(basis)]
+        """Solutions in the longest interval and in its halves for the z of a basis."""
+        least = tuning.BASES[basis].least
+        return [self._field(driven, other, z, least) for z in self._shifts(basis)]
 
-    def _field(self, driven, other, z, thin):
-        """Solutions in the slab and in its halves for a real z."""
-        key = driven, other, z, thin
+    def _field(self, driven, other, z, least):
+        """Solutions in the longest interval and in its halves for a real z."""
+        key = driven, other, z, least
         if key not in self._known:
             grid = self.grid(driven, other)
             # what int g goes within a relaxation time, or within 1/z if this is shorter
             way = grid.way / (1 + z / self.scene.damping)
-            grids = [grid] if self._change is None else [grid, grid.changed(tuning.SLABS.changed)]
-            found = [fields(one, z, self._length, thin * way, self._halvings) for one in grids]
+            grids = [grid]
+            if self._change is not None:
+                grids.append(grid.changed(tuning.PLANE_TRANSFORM.changed))
+            found = [fields(one, z, self._length, least * way, self._halvings) for one in grids]
             self._known[key] = [np.hstack(of_half) for of_half in zip(*found, strict=True)]
         return self._known[key]
 
     def _shifts(self, refined):
         """Real z, of the sizes of the inverse times; of a basis that is `refined` so many times."""
-        settings = tuning.SLABS
+        settings = tuning.PLANE_TRANSFORM
         ends = settings.least / self._times[-1], settings.largest / self._times[0]
         parts = 1
         while math.log10(ends[1] / ends[0]) > settings.widest * parts:
@@ -325,11 +327,11 @@ class PlaneProblem(LaplaceProblem):
         """
         z = self.scene.damping
         mean = (1 - self.coarse_transform(z, 0.0)(z)).real / z
-        return max(mean, tuning.SLABS.shortest / z)
+        return max(mean, tuning.PLANE_TRANSFORM.shortest / z)
 
     def largest_probability(self, time: float) -> float:
         """Chernoff's bound of the probability, from a few small exponents."""
-        settings, transform = tuning.SLABS, self.coarse_transform(0.0, 0.0)
+        settings, transform = tuning.PLANE_TRANSFORM, self.coarse_transform(0.0, 0.0)
         return min(
             math.exp(s) * (abs(transform(s / time)) + settings.coarse) for s in settings.exponents
         )

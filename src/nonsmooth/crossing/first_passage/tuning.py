@@ -175,8 +175,8 @@ class EachPart:
 
 
 @dataclass(frozen=True)
-class Slabs:
-    """Slabs of two state variables, at real z, from which the basis is taken."""
+class PlaneTransform:
+    """The transform of two state variables, and real z from whose solutions bases are taken."""
 
     least: float = 3.0  # chosen: least z times the last time, ...
     largest: float = 10.0  # chosen: ... and largest z times the first time
@@ -196,12 +196,12 @@ class Basis(NamedTuple):
     ----------
     accuracy : float
         Relative size of what is left out.
-    thin : float
-        Thickness of the first slab, relative to the way that int g goes in a relaxation time.
+    least : float
+        Least depth of a solution, relative to the way that int g goes in a relaxation time.
     """
 
     accuracy: float
-    thin: float
+    least: float
 
 
 @dataclass(frozen=True)
@@ -222,7 +222,7 @@ class PlaneGrids:
 
     driven: tuple[int, ...] = (3, 4, 5, 6, 7, 9, 11, 13)  # chosen: polynomial degrees
     # chosen: the same if g depends on it, with the half axis over the finest element; in wide
-    # elements degrees from 8 on make slabs unstable
+    # elements solutions of degrees from 8 on grow
     observed: tuple[tuple[int, float], ...] = (
         (4, 3.0),
         (5, 3.0),
@@ -249,14 +249,14 @@ class PlaneGrids:
     )
     hermite: tuple[int, ...] = (6, 8, 12, 16, 20, 26, 34, 44)
     elements: tuple[tuple[int, tuple[float, ...], tuple[float, ...]], ...] = (
-        (3, (0.3, 1.0), (0.5, 1.0)),
-        (4, (0.3, 1.0), (0.5, 1.0)),
-        (5, (0.3, 1.0), (0.5, 1.0)),
-        (6, (0.2, 1.0), (0.4, 1.0)),
-        (7, (0.15, 0.5, 1.0), (0.3, 1.0)),
-        (8, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
-        (10, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
-        (12, (0.1, 0.4, 1.0), (0.25, 0.6, 1.0)),
+        (3, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (4, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (5, (0.12, 0.4, 1.0), (0.5, 1.0)),
+        (5, (0.05, 0.2, 0.5, 1.0), (0.5, 1.0)),
+        (6, (0.05, 0.2, 0.5, 1.0), (0.5, 1.0)),
+        (7, (0.05, 0.2, 0.5, 1.0), (0.5, 1.0)),
+        (8, (0.05, 0.2, 0.5, 1.0), (0.5, 1.0)),
+        (10, (0.05, 0.2, 0.5, 1.0), (0.5, 1.0)),
     )
     dropped: float = 1e-6  # chosen: share of E |g| at nodes that are taken to stand still
 
@@ -315,11 +315,11 @@ VERTICAL_LINES = VerticalLines()
 REFINEMENT = Refinement()
 LINE_GRIDS = LineGrids()
 FAR_START = FarStart()
-SLABS = Slabs()
+PLANE_TRANSFORM = PlaneTransform()
 EACH_PART = EachPart()
 NEAR_WALL = NearWall()
 PLANE_GRIDS = PlaneGrids()
-# a basis has the solutions of the one before if its first slabs are as thin
+# a basis has the solutions of the one before if its depths are the same
 BASES = (
     Basis(1e-7, 0.02),
     Basis(1e-8, 0.02),

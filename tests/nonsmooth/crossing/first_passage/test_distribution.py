@@ -108,16 +108,16 @@ class TestEarlyTimes:
         assert stepped_at == [*times]
 
 
-class TestWhereSlabsFail:
+class TestWhereContoursFail:
     """Steps in time answer up to some times; later, the refusal says what helps."""
 
     @pytest.fixture(autouse=True)
     def unstable(self, monkeypatch):
-        """Let all slabs fail."""
+        """Let all solutions fail."""
 
         def fails(*problem_and_times):
             def solve(at):
-                raise UnstableError("the slabs amplify")
+                raise UnstableError("the solutions amplify")
 
             return solve
 
@@ -125,13 +125,13 @@ class TestWhereSlabsFail:
 
     @pytest.mark.slow
     def test_steps_take_over(self, monkeypatch):
-        """They agree with slabs within what both state."""
+        """They agree with contours within what both state."""
         levels, times, tol = np.array([[-1.0, 1.0]]), np.array([8.0, 12.0]), 1e-2
         by_steps = deterministic_crossing(COLORED_FRICTION, levels, times, tol)
         monkeypatch.undo()
-        by_slabs = deterministic_crossing(COLORED_FRICTION, levels, times, tol)
-        allowed = by_steps["probability_error"] + by_slabs["probability_error"]
-        assert np.all(np.abs(by_steps["probability"] - by_slabs["probability"]) <= allowed)
+        by_contours = deterministic_crossing(COLORED_FRICTION, levels, times, tol)
+        allowed = by_steps["probability_error"] + by_contours["probability_error"]
+        assert np.all(np.abs(by_steps["probability"] - by_contours["probability"]) <= allowed)
 
     def test_too_late_for_steps(self):
         """Fifty relaxation times are more than steps are tried for."""

@@ -8,7 +8,7 @@ from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.errors import ToleranceError
-from nonsmooth.kinetic.adding_doubling import fields
+from nonsmooth.kinetic.fields import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC
 
 
@@ -80,7 +80,7 @@ class TestCrossing:
     def test_asking_for_less_costs_no_more(self, monkeypatch):
         """Fewer times, or a larger tolerance, take at most 1.2 times the work.
 
-        Nearly all of it is the doubling of slabs, which grows like the cube of the nodes.
+        Much of it are modes of all nodes, whose cost grows like the cube of their number.
         """
         work = []
 

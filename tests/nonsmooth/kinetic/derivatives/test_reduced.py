@@ -8,9 +8,9 @@ import pytest
 from nonsmooth.central_differences import central
 from nonsmooth.grids.generator import Change
 from nonsmooth.grids.solver import EVEN, ODD
-from nonsmooth.kinetic.adding_doubling import fields
 from nonsmooth.kinetic.derivatives.reduced import differentiated
-from nonsmooth.kinetic.reduced_ordinates import reduced
+from nonsmooth.kinetic.fields import fields
+from nonsmooth.kinetic.reduced_ordinates import reduced, unreduced
 from nonsmooth.sensitivity.parameters import PARAMETERS, change, value_of
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from support import coarse_ordinates
@@ -107,20 +107,20 @@ def test_changes_of_the_scene(name, parameter):
     """The generator changes as that of the scene does, on grids of each scene of their own.
 
     Both are wrong by what the coarse grids are wrong, up to 5 % of the derivative; a wrong factor
-    or sign would make far more.
+    or sign would make far more. Transforms on grids of different boxes differ by some 3e-6 besides,
+    which is 1e-4 over 0.06.
     """
     scene, z, levels = SCENES[name], 0.2 + 0.5j, (-0.6, 1.1)
     value = value_of(scene, parameter)
 
     def at(part):
-        return transform(
-            basis(coarse_ordinates(scene.with_parameter(parameter, value * (1 + part)))), z, levels
-        )
+        scene_there = scene.with_parameter(parameter, value * (1 + part))
+        return transform(unreduced(coarse_ordinates(scene_there)), z, levels)
 
     grid = coarse_ordinates(scene, change(scene, parameter))
     found = differentiated(basis(grid, [grid.changed(0.1 * value)]), z, levels, UNMOVED)
     expected = (at(0.03) - at(-0.03)) / 0.06  # but for a part of the order 1e-3
-    assert abs(value * found - expected) <= 0.06 * abs(expected)
+    assert abs(value * found - expected) <= 0.06 * abs(expected) + 1e-4
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -1,0 +1,75 @@
+"""Solutions of the kinetic equation of two state variables at many depths, for real z.
+
+The modes of all ordinates solve (z - A) h = g d_x h in a slab exactly in x. On the nodes where g is
+small they decay so fast that rounding spoils the fastest of them; these only make up what is next
+to the faces. That is enough for solutions whose space is wanted and not they themselves.
+"""
+
+import math
+
+import numpy as np
+
+from nonsmooth.grids.solver import EVEN
+from nonsmooth.kinetic import tuning
+from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, UnstableError
+from nonsmooth.kinetic.reduced_ordinates import unreduced
+
+
+def fields(
+    grid: PlaneOrdinates, z: float, thickness: float, least: float, halvings: int = 0
+) -> list[np.ndarray]:
+    """Solve the kinetic equation in a slab, with h = 1 where the flow leaves.
+
+    Parameters
+    ----------
+    grid : PlaneOrdinates
+    z : float
+        Positive.
+    thickness : float
+        Infinite for a half space.
+    least : float
+        The depth next to a face.
+    halvings : int
+        How often the slab is halved. The halves are solved, too, with the same modes.
+
+    Returns
+    -------
+    list of numpy.ndarray, shape (k, m)
+        For each thickness, h at many depths, on the nodes with g > 0 or their mirror images; depths
+        crowd at the faces.
+
+    Raises
+    ------
+    UnstableError
+        If h, which is between 0 and 1, is much larger.
+    """
+    ordinates = unreduced(grid)
+    eliminated = grid.eliminated(z)
+    modes = ordinates.modes(eliminated, ordinates.continued(eliminated))
+    decays = modes.rates.real
+    found, slowest = [], np.min(decays, where=decays > 0, initial=np.max(decays))
+    for length in thickness / 2.0 ** np.arange(halvings + 1):
+        strengths = np.linalg.solve(modes.at_wall(length), modes.ones)
+        depths = _depths(length, least, slowest)
+        above = np.exp(-np.outer(modes.rates, depths)) * strengths[:, None]
+        below = 0.0 * above
+        if math.isfinite(length):
+            below = np.exp(-np.outer(modes.rates, length - depths)) * strengths[:, None]
+        even, odd = (modes.even @ (above + below)).real, (modes.odd @ (above - below)).real
+        # values at a node's mirror image are those at the node, as far from the other face
+        found.append(ordinates.functions(EVEN) @ np.hstack([even + odd, even - odd]))
+    flow = np.sqrt(grid.masses * np.abs(grid.speeds))
+    size = max(np.linalg.norm(flow[:, None] * h, axis=0).max() for h in found)
+    size /= np.linalg.norm(flow * grid.ones[: len(flow)])
+    if not size < tuning.FIELDS.unstable:
+        raise UnstableError(f"the solutions on {len(flow)} ordinates amplify by {size:.2g}")
+    return found
+
+
+def _depths(length, least, slowest):
+    """Return depths up to the middle, or to where the slowest mode has decayed."""
+    settings = tuning.FIELDS
+    end = min(length / 2, settings.decayed / slowest)
+    count = max(1, math.ceil(settings.per_octave * math.log2(max(end / least, 1.0))))
+    near = end * 2.0 ** (-np.arange(count) / settings.per_octave)
+    return np.unique(np.concatenate([[0.0], near, np.linspace(0, end, settings.even + 1)]))
