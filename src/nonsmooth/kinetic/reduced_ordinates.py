@@ -80,6 +80,7 @@ class ReducedOrdinates:
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
         rates, even = _modes(matrices[EVEN], matrices[ODD])
         odd = matrices[EVEN] @ even / rates
+        rates = _decaying(rates, self.grid.way)
         return ReducedModes(rates, even, odd, self.tests(EVEN) @ flow, rows[EVEN], rows[ODD])
 
 
@@ -171,7 +172,15 @@ def _modes(even, odd):
     """
     inverse = np.linalg.solve(even, np.linalg.inv(odd))
     values, modes = np.linalg.eig(inverse)
-    rates = 1 / np.sqrt(values.astype(complex))
-    # a mode that is rounding has any phase, but decays at once
-    spoiled = np.abs(values) < tuning.REDUCED_ORDINATES.rounding * np.abs(values).max()
-    return np.where(spoiled, np.abs(rates), rates), modes
+    return 1 / np.sqrt(values.astype(complex)), modes
+
+
+def _decaying(rates, way):
+    """Let fast modes decay that hardly do, because of rounding or of a generator that amplifies.
+
+    In a basis the generator may amplify what is narrow, although it does not on the nodes; such a
+    mode would go from wall to wall.
+    """
+    settings = tuning.REDUCED_ORDINATES
+    fast = np.abs(rates) * way > settings.fast
+    return np.where(fast & (rates.real < settings.least * np.abs(rates)), np.abs(rates), rates)

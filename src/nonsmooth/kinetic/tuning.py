@@ -135,7 +135,10 @@ class Fields:
 class ReducedOrdinates:
     """Modes of few ordinates."""
 
-    rounding: float = 1e-14  # derived: ratio of eigenvalues below which they are rounding
+    # chosen: rate, in units of one over the way that int g goes in a relaxation time, from which on
+    # modes decay next to the walls; the real part of such a rate is at least this share of its size
+    fast: float = 50.0
+    least: float = 0.15
 
 
 @dataclass(frozen=True)
