@@ -46,15 +46,15 @@ def fields(
     ordinates = unreduced(grid)
     eliminated = grid.eliminated(z)
     modes = ordinates.modes(eliminated, ordinates.continued(eliminated))
-    decays = modes.rates.real
+    decays = modes.decays.real
     found, slowest = [], np.min(decays, where=decays > 0, initial=np.max(decays))
     for length in thickness / 2.0 ** np.arange(halvings + 1):
         strengths = np.linalg.solve(modes.at_wall(length), modes.ones)
         depths = _depths(length, least, slowest)
-        above = np.exp(-np.outer(modes.rates, depths)) * strengths[:, None]
-        below = 0.0 * above
-        if math.isfinite(length):
-            below = np.exp(-np.outer(modes.rates, length - depths)) * strengths[:, None]
+        above, below = (
+            np.array([modes.left(way) * strengths for way in ways]).T
+            for ways in (depths, length - depths)
+        )
         even, odd = (modes.even @ (above + below)).real, (modes.odd @ (above - below)).real
         # values at a node's mirror image are those at the node, as far from the other face
         found.append(ordinates.functions(EVEN) @ np.hstack([even + odd, even - odd]))

@@ -80,8 +80,8 @@ class ReducedOrdinates:
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
         rates, even = _modes(matrices[EVEN], matrices[ODD])
         odd = matrices[EVEN] @ even / rates
-        rates = _decaying(rates, self.grid.way)
-        return ReducedModes(rates, even, odd, self.tests(EVEN) @ flow, rows[EVEN], rows[ODD])
+        ones, decays = self.tests(EVEN) @ flow, _decaying(rates, self.grid.way)
+        return ReducedModes(rates, even, odd, ones, rows[EVEN], rows[ODD], decays)
 
 
 @dataclass(frozen=True)
@@ -99,6 +99,8 @@ class ReducedModes:
         The function 1.
     even_row, odd_row : numpy.ndarray, shape (r,)
         They interpolate at the start.
+    decays : numpy.ndarray, shape (r,)
+        Rates at which the modes are taken to decay.
     """
 
     rates: np.ndarray
@@ -107,6 +109,7 @@ class ReducedModes:
     ones: np.ndarray
     even_row: np.ndarray
     odd_row: np.ndarray
+    decays: np.ndarray
 
     def at_start(self, lower: float, upper: float) -> complex:
         """Value at x = 0 and the start, if it is 1 where the flow leaves an interval."""
@@ -121,7 +124,7 @@ class ReducedModes:
 
     def left(self, distance: float) -> np.ndarray:
         """Parts of the modes that are left at a distance, 0 at an infinite one."""
-        return np.exp(-self.rates * distance) if np.isfinite(distance) else 0.0 * self.rates
+        return np.exp(-self.decays * distance) if np.isfinite(distance) else 0.0 * self.decays
 
     def at_wall(self, length: float) -> np.ndarray:
         """Values where the flow leaves at one wall, if the strengths at both walls are the same."""
