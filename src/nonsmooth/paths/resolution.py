@@ -102,6 +102,39 @@ def halved_step_bias(scene: Scene, times: ArrayLike, sampling: Sampling) -> dict
     }
 
 
+def sampled_step_bias(
+    scene: Scene, times: ArrayLike, sampling: Sampling, found: dict[str, np.ndarray]
+) -> dict:
+    """Measure the bias of the step on as few paths as its error asks for.
+
+    Parameters
+    ----------
+    scene, times
+        As for `halved_step_bias`.
+    sampling : Sampling
+        Of the moments.
+    found : dict
+        Their standard errors, beside which that of the bias shall be small.
+
+    Returns
+    -------
+    dict
+        As of `halved_step_bias`.
+    """
+    chosen = tuning.MONTE_CARLO
+    pilot = min(sampling.paths, chosen.pilot_paths)
+    halving = replace(sampling.labelled("halving"), paths=pilot, precision="float32")
+    bias = halved_step_bias(scene, times, halving)
+    ratios = [
+        np.max(error / spread, where=spread > 0, initial=0.0)
+        for name, (_, error) in bias.items()
+        for spread in [found[f"{name}_error"]]
+    ]
+    asked = math.ceil(pilot * (max(ratios) / chosen.bias_share) ** 2)
+    paths = min(asked, halving_paths(sampling.paths))
+    return bias if paths <= pilot else halved_step_bias(scene, times, replace(halving, paths=paths))
+
+
 def choose_step(
     scene: Scene,
     times: np.ndarray,

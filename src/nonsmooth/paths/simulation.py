@@ -1,7 +1,5 @@
 """The public function `simulate`: paths of a scene, or the moments of int g over many of them."""
 
-from dataclasses import replace
-
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -22,11 +20,10 @@ from nonsmooth.paths.ensembles import gram, paths_at
 from nonsmooth.paths.moments import moments
 from nonsmooth.paths.resolution import (
     choose_step,
-    halved_step_bias,
-    halving_paths,
     paths_of_variance,
     require_possible,
     require_resolved,
+    sampled_step_bias,
 )
 from nonsmooth.paths.sampling import PRECISIONS, Sampling
 from nonsmooth.paths.schemes import registry
@@ -148,10 +145,7 @@ def _paths(scene, times, sampling, envelope):
 def _statistics(scene, times, sampling, envelope):
     if envelope is None:
         found = moments(gram(scene, times, sampling))
-        halving = replace(
-            sampling.labelled("halving"), paths=halving_paths(sampling.paths), precision="float32"
-        )
-        for name, bias in halved_step_bias(scene, times, halving).items():
+        for name, bias in sampled_step_bias(scene, times, sampling, found).items():
             found[f"{name}_bias"], found[f"{name}_bias_error"] = bias
     else:
         found = moments_under_envelope(scene, times, sampling, envelope)

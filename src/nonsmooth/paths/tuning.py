@@ -27,6 +27,9 @@ class MonteCarlo:
     # chosen: for so many paths one is simulated with the step and with half of it, to measure the
     # bias; this costs as much as three
     halved: int = 8
+    # chosen: standard error of the bias over that of the moment, where fewer paths do; it adds an
+    # eighth to both together
+    bias_share: float = 0.5
     # chosen: largest number of samples, each with the paths and the step that the one before asks
     # for; two are enough as a rule
     attempts: int = 5

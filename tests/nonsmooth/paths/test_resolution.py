@@ -1,6 +1,7 @@
 """The step and the number of paths that a tolerance asks for."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,8 +9,16 @@ from scipy import stats
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.paths.resolution import require_possible, require_resolved
+from nonsmooth.paths.resolution import (
+    halved_step_bias,
+    halving_paths,
+    require_possible,
+    require_resolved,
+    sampled_step_bias,
+)
+from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.simulation import simulate
+from nonsmooth.paths.tuning import MONTE_CARLO
 from references import FALSE_ALARM, FRICTION
 
 
@@ -27,6 +36,23 @@ def test_tolerance_is_met():
         assert abs(run["variance"] - exact)[0] < slack[0]
         assert 2 * run["variance_error"][0] < 0.02 * exact
         assert abs(run["variance_bias"])[0] < 0.02 * exact
+
+
+def test_a_bias_is_measured_on_as_few_paths_as_its_error_asks_for():
+    """A pilot where that is enough, else what makes it half of the error of the moment, or all."""
+    sampling, pilot = Sampling(0.1, 80_000, 3), MONTE_CARLO.pilot_paths
+
+    def measured(paths):
+        halving = replace(sampling.labelled("halving"), paths=paths)
+        return halved_step_bias(FRICTION, [1.0], halving)
+
+    first = {name: error for name, (_, error) in measured(pilot).items()}
+    for share, paths in ((0.3, pilot), (1.0, halving_paths(sampling.paths))):
+        errors = {f"{name}_error": error / share for name, error in first.items()}
+        assert sampled_step_bias(FRICTION, [1.0], sampling, errors) == measured(paths)
+    errors = {f"{name}_error": error / 0.6 for name, error in first.items()}
+    for name, (_, error) in sampled_step_bias(FRICTION, [1.0], sampling, errors).items():
+        assert error == pytest.approx(0.5 * errors[f"{name}_error"], rel=0.2)  # of some 1 %
 
 
 def test_what_would_take_for_ever_is_refused():
