@@ -28,7 +28,8 @@ def fields(
     thickness : float
         Infinite for a half space.
     least : float
-        The depth next to a face.
+        About the least depth. The faces are left out: where functions vary over much less than
+        that, the generator amplifies in the basis that they span.
     halvings : int
         How often the slab is halved. The halves are solved, too, with the same modes.
 
@@ -72,4 +73,4 @@ def _depths(length, least, slowest):
     end = min(length / 2, settings.decayed / slowest)
     count = max(1, math.ceil(settings.per_octave * math.log2(max(end / least, 1.0))))
     near = end * 2.0 ** (-np.arange(count) / settings.per_octave)
-    return np.unique(np.concatenate([[0.0], near, np.linspace(0, end, settings.even + 1)]))
+    return np.unique(np.concatenate([near, np.linspace(0, end, settings.even + 1)[1:]]))

@@ -124,8 +124,8 @@ class GibbsLevel(NamedTuple):
 class Fields:
     """Solutions at many depths, from which a basis is taken."""
 
-    per_octave: int = 2  # chosen: depths within a factor of 2
-    even: int = 8  # chosen: depths that are equally far apart
+    per_octave: int = 3  # chosen: depths within a factor of 2
+    even: int = 16  # chosen: depths that are equally far apart
     decayed: float = 18.0  # chosen: no depth is beyond exp(-18) of the slowest mode
     # chosen: size of a transform, which is between 0 and 1, that shows an unstable grid
     unstable: float = 5.0

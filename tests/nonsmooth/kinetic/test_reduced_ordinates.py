@@ -109,11 +109,14 @@ class TestReducedOrdinates:
     @pytest.mark.slow
     @pytest.mark.parametrize("name", SCENES)
     def test_exits_surely(self, name):
-        """(1 - h) / z increases to the mean exit time as z falls, so that exit is certain."""
+        """(1 - h) / z increases to the mean exit time as z falls, so that exit is certain.
+
+        Its change is z E tau^2 / 2, which is z (E tau)^2 for an exponential time, and less here.
+        """
         few = basis(coarse_ordinates(SCENES[name]), 0.6)
-        mean = [(1 - passage(few, z, -0.3, 0.3).real) / z for z in (1e-2, 1e-4, 1e-6)]
+        mean = [(1 - passage(few, z, -0.3, 0.3).real) / z for z in (1e-2, 1e-3, 1e-4)]
         assert 0 < mean[0] < mean[1] < mean[2]
-        assert mean[2] == pytest.approx(mean[1], rel=1e-4 * mean[2] + 1e-3)
+        assert mean[2] == pytest.approx(mean[1], rel=1e-3 * mean[2])
 
     @pytest.mark.slow
     def test_fast_noise_is_white(self):
