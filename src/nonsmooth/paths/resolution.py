@@ -125,12 +125,11 @@ def sampled_step_bias(
     pilot = min(sampling.paths, chosen.pilot_paths)
     halving = replace(sampling.labelled("halving"), paths=pilot, precision="float32")
     bias = halved_step_bias(scene, times, halving)
-    ratios = [
-        np.max(error / spread, where=spread > 0, initial=0.0)
-        for name, (_, error) in bias.items()
-        for spread in [found[f"{name}_error"]]
-    ]
-    asked = math.ceil(pilot * (max(ratios) / chosen.bias_share) ** 2)
+    errors = np.array([error for _, error in bias.values()])
+    spreads = np.array([found[f"{name}_error"] for name in bias])
+    seen = spreads > 0  # at early times it may be that no path has moved
+    worst = np.max(errors[seen] / spreads[seen], initial=0.0)
+    asked = math.ceil(pilot * (worst / chosen.bias_share) ** 2)
     paths = min(asked, halving_paths(sampling.paths))
     return bias if paths <= pilot else halved_step_bias(scene, times, replace(halving, paths=paths))
 

@@ -78,24 +78,30 @@ def test_ctrl_c_is_heard_within(call):
     """KeyboardInterrupt comes long before the work would be done.
 
     The signal is sent after a tenth of a second; 0.9 seconds later it must have been heard,
-    where the work takes longer than that. Time is that of the processor.
+    where the work takes longer than that. Time is that of the processor. It is sent once more if
+    it comes while Python removes an object, where exceptions are ignored.
     """
     half = RNG.standard_normal((1500, 1500))
     matrix = half @ half.T + 1500 * np.eye(1500)
     previous = signal.signal(signal.SIGINT, signal.default_int_handler)
-    sent = []
+    sent, heard = [], threading.Event()
 
     def press():
         time.sleep(0.1)
-        sent.append(time.process_time())
-        os.kill(os.getpid(), signal.SIGINT)
+        for _ in range(2):
+            sent.append(time.process_time())
+            os.kill(os.getpid(), signal.SIGINT)
+            if heard.wait(2.0):
+                return
 
     presser = threading.Thread(target=press)
     presser.start()
     try:
         with pytest.raises(KeyboardInterrupt):
             _then_wait(call, matrix)
-        assert time.process_time() - sent[0] < 0.9
+        heard.set()
+        assert time.process_time() - sent[-1] < 0.9
     finally:
+        heard.set()
         signal.signal(signal.SIGINT, previous)
         presser.join()
