@@ -199,19 +199,12 @@ def _advance(s, words, data, total, lanes, first, last, steps, lower, upper):
 def _add_products(total, lanes, sums):
     """Add the products of (1, D, D^2, M, M^2 - <M>), summed over the lanes."""
     partial = np.zeros((15, _TOGETHER))
-    whole = lanes - lanes % _TOGETHER
-    for begin in range(0, whole, _TOGETHER):
-        for j in range(_TOGETHER):
-            _gather_products(total, begin + j, partial, j)
-    for j in range(lanes - whole):
-        _gather_products(total, whole + j, partial, j)
+    for begin in range(0, lanes, _TOGETHER):
+        for j in range(min(_TOGETHER, lanes - begin)):
+            d, m = total[TOTAL_DELTA, begin + j], total[TOTAL_MARTINGALE, begin + j]
+            rest = m * m - total[TOTAL_VARIATION, begin + j]
+            _gather(partial, j, (1.0, d, d * d, m, rest))
     _add_symmetric(partial, sums)
-
-
-@inlined
-def _gather_products(total, i, partial, j):
-    d, m = total[TOTAL_DELTA, i], total[TOTAL_MARTINGALE, i]
-    _gather(partial, j, (1.0, d, d * d, m, m * m - total[TOTAL_VARIATION, i]))
 
 
 @inlined

@@ -53,7 +53,7 @@ def test_a_thick_slab_is_a_half_space():
 
 
 def test_halves_are_solved_too():
-    """The same modes serve them: to rounding, each is what is found alone."""
+    """Bit for bit: the same modes serve them as each alone."""
     grid = coarse_ordinates(COLORED_FRICTION)
     thicknesses = 2.0 ** np.array([9, 8, 7]) * grid.way
     alone = [fields(grid, 1e-3, thickness, grid.way)[0] for thickness in thicknesses]
