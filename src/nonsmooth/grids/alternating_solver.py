@@ -180,13 +180,14 @@ class AlternatingSolver:
             ones, measure, scale = measure, ones, ones
         odd = self.mirrored and parity == ODD
 
+        def solution_of(scaled):
+            return self._precondition(scaled / scale, parity, adjoint)
+
+        # preconditioned from the right, so that the residual that GMRES minimises is the true one
         def apply(scaled):
-            values = scaled / scale
+            values = solution_of(scaled)
             result = -self.generator(values, parity, adjoint)
             return scale * (result if odd else result + ones * (measure @ values))
-
-        def precondition(scaled):
-            return scale * self._precondition(scaled / scale, parity, adjoint)
 
         self.iterations = 0
 
@@ -195,11 +196,9 @@ class AlternatingSolver:
             if self.iterations > self.most:
                 raise self._failure(accuracy)
 
-        shape = (right.size, right.size)
         solution, failed = spla.gmres(
-            spla.LinearOperator(shape, apply, dtype=float),
+            spla.LinearOperator((right.size, right.size), apply, dtype=float),
             scale * right,
-            M=spla.LinearOperator(shape, precondition, dtype=float),
             rtol=accuracy,
             restart=tuning.ALTERNATING_DIRECTIONS.krylov,
             maxiter=tuning.ALTERNATING_DIRECTIONS.restarts,
@@ -208,7 +207,7 @@ class AlternatingSolver:
         )
         if failed:
             raise self._failure(accuracy)
-        return solution / scale
+        return solution_of(solution)
 
     def _failure(self, accuracy):
         return ToleranceError(

@@ -44,6 +44,8 @@ class Axis:
     lift_left, lift_right : scipy.sparse.csr_array, shape (k, f)
         What a unit jump adds to the derivative in the element left of the face, if that element
         takes its value from the right; and in the element right of it, if from the left.
+    normal : float or None
+        Standard deviation, where measures have densities with respect to a normal law.
     """
 
     edges: np.ndarray
@@ -57,6 +59,24 @@ class Axis:
     jump: sp.csr_array
     lift_left: sp.csr_array
     lift_right: sp.csr_array
+    normal: float | None = None
+
+    def densities(self, points: ArrayLike) -> np.ndarray:
+        """Matrix that takes masses at the nodes to the density of their measure at points.
+
+        Parameters
+        ----------
+        points : array_like, shape (q,)
+
+        Returns
+        -------
+        numpy.ndarray, shape (q, k)
+        """
+        found = self.interpolation(points).toarray() / self.weights
+        if self.normal is None:
+            return found
+        z = np.asarray(points, dtype=float) / self.normal
+        return np.exp(-(z**2) / 2)[:, None] / (np.sqrt(2 * np.pi) * self.normal) * found
 
     def interpolation(self, points: ArrayLike) -> sp.csr_array:
         """Matrix that takes nodal values to values at points, 0 outside.

@@ -55,6 +55,14 @@ class Elements:
 
 
 @dataclass(frozen=True)
+class Hermite:
+    """Polynomials of a normal variable; both numbers are even, as symmetry needs them."""
+
+    fewest: int = 6  # chosen: nodes on level 0
+    added: int = 4  # chosen: nodes that each level adds
+
+
+@dataclass(frozen=True)
 class AlternatingDirections:
     """The iteration for three and four variables."""
 
@@ -126,6 +134,7 @@ class PotentialWells:
 
 BOX = Box()
 ELEMENTS = Elements()
+HERMITE = Hermite()
 ALTERNATING_DIRECTIONS = AlternatingDirections()
 TENSOR_GRIDS = TensorGrids()
 UNIFORM_REFINEMENT = UniformRefinement()

@@ -1,7 +1,6 @@
 """Ensembles of paths: blocks are simulated in parallel and their results added in order."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -143,7 +142,7 @@ def over_blocks(
 
 
 def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
-    """Simulate paths, always in double precision, and keep them at the output times.
+    """Simulate paths and keep them at the output times.
 
     Returns
     -------
@@ -151,14 +150,15 @@ def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:
         The scene's k state variables and D = int_0^t g, time 0 included.
     """
     rows = [row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in scene.state]
-    double = replace(sampling, precision="float64")
     require_memory(2 * (len(rows) + 1) * (np.size(times) + 1) * sampling.paths)
 
     def state(panel, count):
         return np.vstack([panel.data[rows, :count], panel.total[TOTAL_DELTA, :count]])
 
-    kept = list(over_blocks(scene, equal_steps(times, sampling.step), double, state, control=False))
-    start = state(new_panel(scene, sampling.seed, 0, "float64"), 1)
+    kept = list(
+        over_blocks(scene, equal_steps(times, sampling.step), sampling, state, control=False)
+    )
+    start = state(new_panel(scene, sampling.seed, 0, sampling.precision), 1)
     later = np.concatenate(kept, axis=2)
     return np.concatenate([np.broadcast_to(start, (1, *later.shape[1:])), later])
 

@@ -1,5 +1,7 @@
 """The public function `simulate`: paths of a scene, or the moments of int g over many of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -131,7 +133,7 @@ def simulate(
 
 def _paths(scene, times, sampling, envelope):
     if envelope is None:
-        kept = paths_at(scene, times, sampling)
+        kept = paths_at(scene, times, replace(sampling, precision="float64"))
     else:
         kept = paths_under_envelope(scene, times, sampling, envelope)
     names = [*scene.state, "delta"]

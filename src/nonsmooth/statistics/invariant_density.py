@@ -362,7 +362,7 @@ def _averages_on(scene, grid, edges, accuracy):
         if symbol.name in edges:
             marginal = masses.sum(axis=tuple(k for k in range(len(axes)) if k != place))
             points, weights = _averaging(edges[symbol.name], axis.edges, gauss)
-            found[symbol.name] = weights @ (axis.interpolation(points) @ (marginal / axis.weights))
+            found[symbol.name] = weights @ (axis.densities(points) @ marginal)
     return found
 
 
@@ -416,16 +416,13 @@ def densities_on(
     shape = [len(axis.nodes) for axis in axes.values()]
     masses = solve.stationary(accuracy).reshape(shape)
     order = [symbol.name for symbol in axes]
-    at = {
-        symbol.name: axis.interpolation(points[symbol.name]) / axis.weights
-        for symbol, axis in axes.items()
-    }
+    at = {symbol.name: axis.densities(points[symbol.name]) for symbol, axis in axes.items()}
     found = {}
     for key in [(name,) for name in names] + [tuple(names[-2:])] * (len(names) > 1):
         rest = tuple(place for place, name in enumerate(order) if name not in key)
         joint = masses.sum(axis=rest)
         for place, name in enumerate(name for name in order if name in key):
-            joint = np.moveaxis(np.tensordot(at[name].toarray(), joint, axes=(1, place)), 0, place)
+            joint = np.moveaxis(np.tensordot(at[name], joint, axes=(1, place)), 0, place)
         if [name for name in order if name in key] != list(key):
             joint = joint.T
         found[key] = joint

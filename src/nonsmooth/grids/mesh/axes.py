@@ -15,6 +15,7 @@ from nonsmooth.grids.mesh.edges import (
     potentials,
     resolving,
 )
+from nonsmooth.grids.mesh.hermite import deviation, hermite
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
@@ -48,16 +49,19 @@ def axes(
         and, with two variables, the number of layers towards a kink.
     margin : float
         Width of an element that is added on either side of the box, relative to the half width, to
-        see whether the box is too small.
+        see whether the box is too small. Polynomials of a normal variable need no box.
 
     Returns
     -------
     dict
         Maps symbols, in the order of the axes, to `Axis`.
     """
-    made, wells = {}, potentials(scene, ends)
+    made, wells, chosen = {}, potentials(scene, ends), tuning.HERMITE
     for symbol in variables(scene):
         level, end = levels[symbol], ends[symbol]
+        if len(levels) > 2 and (spread := deviation(scene, symbol)) is not None:
+            made[symbol] = hermite(chosen.fewest + chosen.added * level, spread, end)
+            continue
         edges = element_edges(scene, symbol, end, _layers(symbol, levels))
         if symbol in wells:
             potential, temperature = wells[symbol]
