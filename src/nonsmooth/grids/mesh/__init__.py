@@ -7,5 +7,6 @@ there, so that the solution is smooth within each element.
 - `box.half_widths`, `box.narrowed`: how large the box must be.
 - `box_effect.BoxEffect`: what a larger box changes.
 - `edges.kinks`, `edges.potentials`, `edges.element_edges`: where the elements end.
+- `hermite.hermite`: polynomials of a normal variable, in the place of elements.
 - `axes.variables`, `axes.axes`: nodes, weights and derivatives on these elements.
 """
