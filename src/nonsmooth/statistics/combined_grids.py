@@ -219,20 +219,29 @@ def _on_coarsest(grid, tol, on, allowed):
 
     That error is relative to what is allowed for a tolerance of 1. The norm of a residual says
     little about the error: the residual is largest where the invariant measure has hardly any mass,
-    and may stagnate there. So it is reduced until the functional no longer changes.
+    and may stagnate there. So it is reduced until the functional no longer changes. One iteration
+    may gain more than a digit of it, and then the same iterate meets two residuals. Therefore a
+    hundredth of a residual is looked at, besides a tenth.
     """
     chosen = tuning.GAMMA2_ON_GRIDS
     accuracy = tol * chosen.residual
     if len(grid.levels) <= 2:
         return on(grid, accuracy), accuracy, accuracy
+
+    def change(found):
+        if len(found) < 3:
+            return math.inf
+        before, *later = (value for value, _ in found[-3:])
+        return max(abs(value - before) for value in later) / abs(allowed(before, 1.0))
+
     refined = until_agreement(
         _tenths(accuracy),
         lambda accuracy: (on(grid, accuracy), accuracy),
-        lambda found: abs(found[-1][0] - found[-2][0]) / abs(allowed(found[-1][0], 1.0)),
+        change,
         met=lambda _, change: change <= chosen.iteration * tol,
     )
-    # the smaller residual changed so little that the one before is good enough
-    value, accuracy = refined.solutions[-2]
+    # smaller residuals changed so little that the one before is good enough
+    value, accuracy = refined.solutions[-3]
     return value, accuracy, max(2 * refined.error, accuracy)
 
 

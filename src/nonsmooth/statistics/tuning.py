@@ -17,7 +17,8 @@ class Gamma2OnGrids:
     # chosen: levels of the coarsest grid; from there on, changes by refinement decay
     coarse: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 1, 4: 1})
     residual: float = 0.02  # chosen: first residual of the iteration, relative to the tolerance
-    iteration: float = 0.1  # chosen: part of the tolerance that a tenth of the residual may change
+    # chosen: part of the tolerance that a hundredth of the residual may change
+    iteration: float = 0.1
     work: int = 8  # chosen: work for one value, in units of the largest grid; bounds the time
     # chosen: largest grid on which a larger box is tried, in units of the largest grid
     boxed: float = 0.25

@@ -34,6 +34,16 @@ def test_three_variables_linear(square):
     assert abs(found.value - linear_reference(scene, square)) <= found.error
 
 
+@pytest.mark.slow
+def test_residuals_that_one_iterate_meets_say_nothing():
+    """Four variables, linear: one iteration gains two digits, so that a tenth changes nothing."""
+    rng = np.random.default_rng(107)
+    rng.random()
+    scene = ns.Scene(**random_linear(rng, "hamiltonian"), observable="x")
+    value, error = gamma2_on_grids.gamma2(scene, 1e-2)
+    assert abs(value - linear_reference(scene, False)) <= error <= 1e-2 * value
+
+
 def test_cost_grows_smoothly_with_the_digits(monkeypatch):
     """Each digit takes at most four times the grid points of the one before, and errors hold.
 
