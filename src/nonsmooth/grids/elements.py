@@ -45,7 +45,8 @@ class Axis:
         What a unit jump adds to the derivative in the element left of the face, if that element
         takes its value from the right; and in the element right of it, if from the left.
     normal : float or None
-        Standard deviation, where measures have densities with respect to a normal law.
+        Standard deviation of the normal law to which the weights belong, if they do not belong to
+        lengths.
     """
 
     edges: np.ndarray

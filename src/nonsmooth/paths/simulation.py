@@ -132,10 +132,11 @@ def simulate(
 
 
 def _paths(scene, times, sampling, envelope):
+    double = replace(sampling, precision="float64")
     if envelope is None:
-        kept = paths_at(scene, times, replace(sampling, precision="float64"))
+        kept = paths_at(scene, times, double)
     else:
-        kept = paths_under_envelope(scene, times, sampling, envelope)
+        kept = paths_under_envelope(scene, times, double, envelope)
     names = [*scene.state, "delta"]
     titles = TITLES | {"delta": "int g"}
     return dataset(

@@ -9,7 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.special import roots_hermitenorm
+from numpy.polynomial.hermite_e import hermevander
+from scipy.special import factorial, roots_hermitenorm
 from sympy import Symbol
 
 from nonsmooth.grids.elements import Axis
@@ -86,10 +87,7 @@ def _gauss(count):
     nodes, weights = roots_hermitenorm(count)
     nodes = (nodes - nodes[::-1]) / 2  # symmetric beyond rounding
     weights = weights / weights.sum()
-    order = np.arange(count)
-    values = np.ones((count, count))  # of normalised Hermite polynomials
-    for k in range(1, count):
-        before = np.sqrt(k - 1) * values[:, k - 2] if k > 1 else 0.0
-        values[:, k] = (nodes * values[:, k - 1] - before) / np.sqrt(k)
-    lowered = np.diag(np.sqrt(order[1:]), 1)  # He_k' = sqrt(k) He_(k-1)
+    degrees = np.arange(count)
+    values = hermevander(nodes, count - 1) / np.sqrt(factorial(degrees))
+    lowered = np.diag(np.sqrt(degrees[1:]), 1)  # normalised, He_k' = sqrt(k) He_(k-1)
     return nodes, weights, values @ lowered @ (weights[:, None] * values).T

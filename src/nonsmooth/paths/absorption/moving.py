@@ -78,13 +78,12 @@ def paths_under_envelope(
     rows = [row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in scene.state]
     rows.append(DELTA)
     require_memory(2 * len(rows) * (np.size(times) + 1) * sampling.paths)
-    double = replace(sampling, precision="float64")
-    start = new_panel(scene, sampling.seed, 0, "float64").data[rows, :1]
+    start = new_panel(scene, sampling.seed, 0, sampling.precision).data[rows, :1]
 
     def state(panels, _survival, count):
         return panels[1].data[rows, :count]
 
-    later = np.concatenate(list(_blocks(scene, times, double, envelope, state)), axis=2)
+    later = np.concatenate(list(_blocks(scene, times, sampling, envelope, state)), axis=2)
     return np.concatenate([np.broadcast_to(start, (1, *later.shape[1:])), later])
 
 
