@@ -7,8 +7,11 @@ cycles: a cycle lasts until int g has moved by b to either side, and for some ti
 equidistant times, called looks, a path is examined for passages.
 """
 
+import math
 import time
 from dataclasses import dataclass, replace
+from itertools import count
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,6 +36,50 @@ from nonsmooth.paths.time_loop import (
     march_pair,
 )
 from nonsmooth.scenes.scene import Scene
+
+
+class _Parts(NamedTuple):
+    """The error by sampling and the step, by the threshold, and by the time after a passage."""
+
+    scatter: float
+    threshold: float
+    after: float
+
+
+class _Run(NamedTuple):
+    """How kappa is sampled.
+
+    Attributes
+    ----------
+    far : float
+        The threshold over the spread of int g.
+    lag : float
+        The time after a passage.
+    paths : int
+    """
+
+    far: float
+    lag: float
+    paths: int
+
+    @property
+    def cycles(self) -> int:
+        """How long a path is, in lags; larger thresholds are passed less often."""
+        return round(tuning.SAMPLED.cycles * self.far / tuning.SAMPLED.far)
+
+    @property
+    def work(self) -> float:
+        """Time of all paths together."""
+        return self.cycles * self.lag * self.paths
+
+    def refined(self, parts: _Parts) -> "_Run":
+        """Refine what has the largest part in the error."""
+        worst = max(parts)
+        if worst == parts.scatter:
+            return self._replace(paths=4 * self.paths)
+        if worst == parts.threshold:
+            return self._replace(far=2 * self.far)
+        return self._replace(lag=2 * self.lag)
 
 
 @dataclass(frozen=True)
@@ -89,19 +136,21 @@ def sampled_kappa(
             "the extrapolation length is sampled for odd g, not for g = "
             f"{quoted(scene.observable)} with the state ({', '.join(scene.state)}); choose such a g"
         )
-    lag, paths = tuning.SAMPLED.lag * max(1.0, 1 / scene.damping), tuning.SAMPLED.paths
-    for attempt in range(tuning.SAMPLED.attempts):
+    settings = tuning.SAMPLED
+    run = _Run(settings.far, settings.lag * max(1.0, 1 / scene.damping), settings.paths)
+    most = settings.work * run.work
+    for attempt in count():
         step = coarse_step(scene) / 2
         own = labelled(seed, attempt)
-        sampling = Sampling(step, paths, own, threads=threads, precision="float64")
-        value, error = _estimate(scene, lag, sampling)
-        wanted = tuning.SAMPLED.tolerance * abs(value) if tol is None else tol
+        sampling = Sampling(step, run.paths, own, threads=threads, precision="float64")
+        value, error, parts = _estimate(scene, run, sampling)
+        wanted = settings.tolerance * abs(value) if tol is None else tol
         if error <= wanted:
             return Estimate(value, error, "Monte Carlo", time.perf_counter() - began)
-        # twice the paths halve an error at best
-        if error > wanted * 2 ** (tuning.SAMPLED.attempts - 1 - attempt):
+        run, left = run.refined(parts), most / run.work
+        # work that is n times as much makes the scatter at best sqrt(n) times smaller
+        if run.work > most or parts.scatter > wanted * math.sqrt(left):
             break
-        lag, paths = 1.5 * lag, 2 * paths
     raise ToleranceError(
         f"kappa = {value:.3g} has an error of {error:.1e}, above tol; loosen tol",
         Estimate(value, error, "Monte Carlo", time.perf_counter() - began),
@@ -142,22 +191,26 @@ def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = N
     return Estimate(float(end), float(error), "Monte Carlo", time.perf_counter() - began)
 
 
-def _estimate(scene, lag, sampling):
-    after = 2 * round(lag / sampling.step / 2)
-    far = tuning.SAMPLED.far * _spread(scene, after, sampling.labelled("spread"))
+def _estimate(scene, run, sampling):
+    """Return kappa, its error, and the parts of that."""
+    after = 2 * round(run.lag / sampling.step / 2)
+    far = run.far * _spread(scene, after, sampling.labelled("spread"))
     cycles = [
         _Cycle(far, after),
         _Cycle(far / 2, after),
         _Cycle(far, after // 2),
         _Cycle(far, after // 2, stride=2),
     ]
-    (value, spread), *others = (_mean(*gains) for gains in _gains(scene, after, cycles, sampling))
-    changes = [other - value for other, _ in others]
+    steps = run.cycles * after
+    gains = _gains(scene, after, steps, cycles, sampling)
+    (value, spread), *others = (_mean(*of_cycle) for of_cycle in gains)
+    changes = np.abs([other - value for other, _ in others])
     fewer = max(tuning.SAMPLED.pilot_paths, sampling.paths // tuning.SAMPLED.halved)
     halving = replace(sampling.labelled("halving"), paths=fewer)
-    bias, deviation = _step_bias(scene, after, cycles[0], halving)
-    error = 2 * spread + np.linalg.norm(changes) + abs(bias) + 2 * deviation
-    return value, float(error)
+    bias, deviation = _step_bias(scene, after, steps, cycles[0], halving)
+    scatter = 2 * spread + abs(bias) + 2 * deviation
+    error = scatter + np.linalg.norm(changes)
+    return value, float(error), _Parts(scatter, *changes[:2])
 
 
 def _spread(scene, after, sampling):
@@ -172,7 +225,7 @@ def _spread(scene, after, sampling):
     return np.std(end - before)
 
 
-def _gains(scene, after, cycles, sampling):
+def _gains(scene, after, steps, cycles, sampling):
     """For each path, sum the gains of its cycles and count the cycles: shape (cycles, 2, paths)."""
     s = registry.coefficients(scene, sampling.scheme, sampling.step, sampling.precision)
     compile_march(s, new_panel(scene, sampling.seed, 0, sampling.precision))
@@ -183,7 +236,7 @@ def _gains(scene, after, cycles, sampling):
         integral = panel.total[TOTAL_DELTA, :lanes]
         march(s, panel, lanes, after, *EVERYWHERE)  # the approach to stationarity
         states = [_begun(integral) for _ in cycles]
-        for k in range(1, tuning.SAMPLED.cycles * after + 1):
+        for k in range(1, steps + 1):
             march(s, panel, lanes, 1, *EVERYWHERE)
             for state, cycle in zip(states, cycles, strict=True):
                 if k % cycle.stride == 0:
@@ -191,11 +244,10 @@ def _gains(scene, after, cycles, sampling):
         require_finite(integral)
         return np.array(states)[:, -2:]
 
-    steps = (1 + tuning.SAMPLED.cycles) * after
-    return np.concatenate(list(parallel(run, sampling, steps)), axis=2)
+    return np.concatenate(list(parallel(run, sampling, after + steps)), axis=2)
 
 
-def _step_bias(scene, after, cycle, sampling):
+def _step_bias(scene, after, steps, cycle, sampling):
     """Measure the bias of the mean gain by halving the time step; return it and its error."""
     fine, coarse = (
         registry.coefficients(scene, sampling.scheme, h, sampling.precision)
@@ -210,12 +262,12 @@ def _step_bias(scene, after, cycle, sampling):
         integrals = [panel.total[TOTAL_DELTA, :lanes] for panel in panels]
         passage = np.full((2, lanes), np.inf)
 
-        def advance(steps):
-            march_pair(fine, given, *panels, lanes, steps, *EVERYWHERE, 0.0, passage)
+        def advance(count):
+            march_pair(fine, given, *panels, lanes, count, *EVERYWHERE, 0.0, passage)
 
         advance(after)
         states = [_begun(integral) for integral in integrals]
-        for _ in range(tuning.SAMPLED.cycles * after):
+        for _ in range(steps):
             advance(1)
             for state, integral in zip(states, integrals, strict=True):
                 _look(state, integral, cycle.threshold, cycle.after)
@@ -223,7 +275,7 @@ def _step_bias(scene, after, cycle, sampling):
             require_finite(integral)
         return np.array(states)[:, -2:]
 
-    runs = parallel(run, sampling, 3 * (1 + tuning.SAMPLED.cycles) * after)
+    runs = parallel(run, sampling, 3 * (after + steps))
     half, whole = np.concatenate(list(runs), axis=2)
     factor = bias_over_change(registry.scheme(scene, sampling.scheme).weak_order(scene))
     # The mean is a ratio of sums over independent paths; its error is that of the linearised ratio.

@@ -41,20 +41,22 @@ class Sampled:
     """kappa by Monte Carlo."""
 
     tolerance: float = 0.2  # relative error, unless asked; chosen: seconds, enough for a correction
-    paths: int = 2000  # at first, doubled at each attempt; chosen: two blocks of paths
+    paths: int = 2000  # at the first attempt; chosen: two blocks of paths
     # time after a passage at the first attempt, in units of the larger of 1 and 1 / C_b; chosen:
-    # if that is the relaxation time, e^-4 = 2 % is left of correlations
+    # if that is the relaxation time, e^-4 = 2 % is left of correlations; scenes that yield need
+    # several times as much
     lag: float = 4.0
-    cycles: int = 75  # duration of a path over that time; chosen: dozens of passages on each path
+    cycles: int = 25  # duration of a path over that time; chosen: several passages on each path
     # threshold over the standard deviation of what int g gains in that time; chosen: the start of a
     # cycle is forgotten at the passage
     far: float = 2.0
-    attempts: int = 3  # each with more paths and time; chosen: a minute
+    # largest time of all paths together, over that of the first attempt; chosen: half a minute
+    work: float = 32.0
     # tolerance of the simulation that gives the mean of int g from the start; chosen: quick
     start: float = 0.05
     # paths that measure the bias of the step: the least number, and one in so many of all paths;
     # chosen: with whole and half steps they cost three quarters of what the others cost
-    pilot_paths: int = 1000
+    pilot_paths: int = 500
     halved: int = 4
 
 
