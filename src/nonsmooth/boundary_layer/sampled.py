@@ -76,7 +76,7 @@ class _Run(NamedTuple):
         """Refine what has the largest part in the error."""
         worst = max(parts)
         if worst == parts.scatter:
-            return self._replace(paths=4 * self.paths)
+            return self._replace(paths=2 * self.paths)
         if worst == parts.threshold:
             return self._replace(far=2 * self.far)
         return self._replace(lag=2 * self.lag)
@@ -121,7 +121,8 @@ def sampled_kappa(
         The error is the sum of two standard errors; of the changes of kappa if the threshold is
         halved, if the time after the passage is halved, and if paths are looked at every other step
         only; and of the bias of the time step, measured by halving it on the same noise, with two
-        standard errors of that.
+        standard errors of that. Of the threshold, the time after the passage and the number of
+        paths, what has the largest part in it is doubled.
 
     Raises
     ------
