@@ -39,9 +39,10 @@ from nonsmooth.scenes.scene import Scene
 
 
 class _Parts(NamedTuple):
-    """The error by sampling and the step, by the threshold, and by the time after a passage."""
+    """The error by sampling, the step, the threshold, and the time after a passage."""
 
     scatter: float
+    step: float
     threshold: float
     after: float
 
@@ -56,11 +57,13 @@ class _Run(NamedTuple):
     lag : float
         The time after a passage.
     paths : int
+    step : float
     """
 
     far: float
     lag: float
     paths: int
+    step: float
 
     @property
     def cycles(self) -> int:
@@ -69,14 +72,16 @@ class _Run(NamedTuple):
 
     @property
     def work(self) -> float:
-        """Time of all paths together."""
-        return self.cycles * self.lag * self.paths
+        """Steps of all paths together."""
+        return self.cycles * self.lag * self.paths / self.step
 
     def refined(self, parts: _Parts) -> "_Run":
         """Refine what has the largest part in the error."""
         worst = max(parts)
         if worst == parts.scatter:
             return self._replace(paths=2 * self.paths)
+        if worst == parts.step:
+            return self._replace(step=self.step / 2)
         if worst == parts.threshold:
             return self._replace(far=2 * self.far)
         return self._replace(lag=2 * self.lag)
@@ -121,8 +126,8 @@ def sampled_kappa(
         The error is the sum of two standard errors; of the changes of kappa if the threshold is
         halved, if the time after the passage is halved, and if paths are looked at every other step
         only; and of the bias of the time step, measured by halving it on the same noise, with two
-        standard errors of that. Of the threshold, the time after the passage and the number of
-        paths, what has the largest part in it is doubled.
+        standard errors of that. What has the largest part in it is refined: the threshold, the time
+        after the passage or the number of paths is doubled, or the step is halved.
 
     Raises
     ------
@@ -138,12 +143,12 @@ def sampled_kappa(
             f"{quoted(scene.observable)} with the state ({', '.join(scene.state)}); choose such a g"
         )
     settings = tuning.SAMPLED
-    run = _Run(settings.far, settings.lag * max(1.0, 1 / scene.damping), settings.paths)
+    lag, step = settings.lag * max(1.0, 1 / scene.damping), coarse_step(scene) / 2
+    run = _Run(settings.far, lag, settings.paths, step)
     most = settings.work * run.work
     for attempt in count():
-        step = coarse_step(scene) / 2
         own = labelled(seed, attempt)
-        sampling = Sampling(step, run.paths, own, threads=threads, precision="float64")
+        sampling = Sampling(run.step, run.paths, own, threads=threads, precision="float64")
         value, error, parts = _estimate(scene, run, sampling)
         wanted = settings.tolerance * abs(value) if tol is None else tol
         if error <= wanted:
@@ -209,9 +214,8 @@ def _estimate(scene, run, sampling):
     fewer = max(tuning.SAMPLED.pilot_paths, sampling.paths // tuning.SAMPLED.halved)
     halving = replace(sampling.labelled("halving"), paths=fewer)
     bias, deviation = _step_bias(scene, after, steps, cycles[0], halving)
-    scatter = 2 * spread + abs(bias) + 2 * deviation
-    error = scatter + np.linalg.norm(changes)
-    return value, float(error), _Parts(scatter, *changes[:2])
+    error = 2 * spread + abs(bias) + 2 * deviation + np.linalg.norm(changes)
+    return value, float(error), _Parts(2 * spread + 2 * deviation, abs(bias), *changes[:2])
 
 
 def _spread(scene, after, sampling):
@@ -263,8 +267,8 @@ def _step_bias(scene, after, steps, cycle, sampling):
         integrals = [panel.total[TOTAL_DELTA, :lanes] for panel in panels]
         passage = np.full((2, lanes), np.inf)
 
-        def advance(count):
-            march_pair(fine, given, *panels, lanes, count, *EVERYWHERE, 0.0, passage)
+        def advance(by):
+            march_pair(fine, given, *panels, lanes, by, *EVERYWHERE, 0.0, passage)
 
         advance(after)
         states = [_begun(integral) for integral in integrals]

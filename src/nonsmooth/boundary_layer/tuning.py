@@ -50,7 +50,7 @@ class Sampled:
     # threshold over the standard deviation of what int g gains in that time; chosen: the start of a
     # cycle is forgotten at the passage
     far: float = 2.0
-    # largest time of all paths together, over that of the first attempt; chosen: half a minute
+    # largest number of steps of all paths, over that of the first attempt; chosen: half a minute
     work: float = 32.0
     # tolerance of the simulation that gives the mean of int g from the start; chosen: quick
     start: float = 0.05
