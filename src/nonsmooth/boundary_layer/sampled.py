@@ -154,7 +154,7 @@ def sampled_kappa(
         if error <= wanted:
             return Estimate(value, error, "Monte Carlo", time.perf_counter() - began)
         run, left = run.refined(parts), most / run.work
-        # work that is n times as much makes the scatter at best sqrt(n) times smaller
+        # n times the work makes the scatter at best sqrt(n) times smaller
         if run.work > most or parts.scatter > wanted * math.sqrt(left):
             break
     raise ToleranceError(
