@@ -52,7 +52,7 @@ def density(scene, tol):
     """Return all densities, and their errors, each relative to its largest value."""
     ends = tensor_grid.fitted(scene, 10.0, 1).ends
     points = {symbol.name: np.linspace(-end, end, 101) for symbol, end in ends.items()}
-    found, met = reached(lambda: ns.invariant_density(scene, tol, points))
+    found, met = reached(lambda: ns.invariant_density(scene, tol, points, "deterministic"))
     if found is None:
         return None, met
     values, errors = [], []

@@ -26,7 +26,7 @@ from .sensitivity.gamma2 import (
     asymptotic_variance_sensitivity as asymptotic_variance_sensitivity,
 )
 from .statistics.asymptotic_variance import asymptotic_variance as asymptotic_variance
-from .statistics.invariant_density import invariant_density as invariant_density
+from .statistics.density.invariant_density import invariant_density as invariant_density
 from .statistics.mean import mean as mean
 from .statistics.spectral_gap import spectral_gap as spectral_gap
 from .statistics.variance import variance as variance

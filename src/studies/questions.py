@@ -149,7 +149,7 @@ QUESTIONS: dict[str, Question] = {
     ),
     "invariant_density": Question(
         "Invariant densities",
-        "nonsmooth.statistics.invariant_density.invariant_density",
+        "nonsmooth.statistics.density.invariant_density.invariant_density",
         {
             f"density_{'_'.join(names)}": (
                 {base: -power for base, power in powers.items()},
@@ -163,8 +163,7 @@ QUESTIONS: dict[str, Question] = {
             "eta": (VARIABLES["eta"], "noise eta, which drives the velocity"),
             "zeta": (VARIABLES["zeta"], "noise zeta, the rate of eta"),
         },
-        {"tol": PLAIN},
-        sampled=False,
+        {"tol": PLAIN, "method": PLAIN},
     ),
     "spectral_gap": Question(
         "Spectral gap",

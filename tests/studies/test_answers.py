@@ -9,7 +9,7 @@ from scipy.special import ndtri
 from nonsmooth.scenes.noises import White
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
-from nonsmooth.statistics.invariant_density import invariant_density
+from nonsmooth.statistics.density.invariant_density import invariant_density
 from reproduction.jobs import artifact
 from studies import answers
 from studies.answers import answer, answer_batch

@@ -191,7 +191,7 @@ def energy(slopes: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return block - np.diag(block.sum(axis=1))
 
 
-def continuous(edges: np.ndarray, degree: int) -> Axis:
+def continuous(edges: np.ndarray, degree: int, closed: bool = False) -> Axis:
     """Make continuous elements with Gauss-Lobatto nodes (lumped mass matrix).
 
     Parameters
@@ -199,6 +199,8 @@ def continuous(edges: np.ndarray, degree: int) -> Axis:
     edges : numpy.ndarray, shape (e + 1,)
     degree : int
         At least 2.
+    closed : bool
+        Whether no slope is ever released, so that no mass passes the ends.
 
     Returns
     -------
@@ -217,8 +219,9 @@ def continuous(edges: np.ndarray, degree: int) -> Axis:
     square = derivative.T @ (quadrature[:, None] * derivative)
     second = summed([-square / h for h in half])
     release = np.zeros((size, size))
-    release[0, : degree + 1] -= derivative[0] / half[0]
-    release[-1, -degree - 1 :] += derivative[-1] / half[-1]
+    if not closed:
+        release[0, : degree + 1] -= derivative[0] / half[0]
+        release[-1, -degree - 1 :] += derivative[-1] / half[-1]
     none = sp.csr_array((0, size))
     return Axis(
         edges,

@@ -34,12 +34,15 @@ class Grid:
         Width of the elements that are added outside the box, see `mesh.axes.axes`.
     shift : float
         The shift of `AlternatingSolver`, if this is used.
+    of_density : bool
+        Whether densities are solved for, see `mesh.axes.axes`.
     """
 
     ends: Mapping[Symbol, float]
     levels: Mapping[Symbol, int]
     margin: float = 0.0
     shift: float = 8.0
+    of_density: bool = False
 
     def raised(self, symbol: Symbol) -> "Grid":
         """Return the grid with one variable resolved better."""
@@ -94,7 +97,7 @@ def _alternating(scene, grid):
 
 def _discretised(scene, grid):
     """Return the axes, and whether half of the grid is enough: no node is its own mirror image."""
-    axes = axes_of(scene, grid.ends, grid.levels, grid.margin)
+    axes = axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
     nodes = math.prod(len(axis.nodes) for axis in axes.values())
     return axes, scene.is_odd() and nodes % 2 == 0
 
@@ -187,7 +190,7 @@ def _with_best_shift(scene, grid):
 
 def points(scene: Scene, grid: Grid) -> int:
     """Return the number of nodes of a grid."""
-    axes = axes_of(scene, grid.ends, grid.levels)
+    axes = axes_of(scene, grid.ends, grid.levels, of_density=grid.of_density)
     return math.prod(len(axis.nodes) for axis in axes.values())
 
 

@@ -55,6 +55,24 @@ class Elements:
 
 
 @dataclass(frozen=True)
+class Layers:
+    """Elements of densities that are concentrated along a line."""
+
+    width: float = 6.0  # chosen: of the elements on level 0, in standard deviations of the lag
+    narrower: float = 0.25  # chosen: what each level adds to 1 over the width, relative to level 0
+    fewest: int = 4  # chosen: elements of a half width on level 0; each level adds one
+    degree: int = 4  # chosen: on level 0; each level adds one
+    # chosen: the last of the growing elements is left out if less of it than this would remain
+    spare: float = 0.3
+    ratio: float = 3.0  # chosen: of the elements that crowd where solutions are least smooth
+    corner: int = 3  # chosen: powers of the ratio by which these are smaller than a half width
+    distinct: float = 1e-9  # chosen: relative distance below which two edges are one
+    # chosen: elements of a half width on level 0, at most; layers that need more are not resolved
+    most: int = 24
+    rim: float = 0.05  # chosen: width of the constant elements at the ends, over the half width
+
+
+@dataclass(frozen=True)
 class Hermite:
     """Polynomials of a normal variable; both numbers are even, as symmetry needs them."""
 
@@ -134,6 +152,7 @@ class PotentialWells:
 
 BOX = Box()
 ELEMENTS = Elements()
+LAYERS = Layers()
 HERMITE = Hermite()
 ALTERNATING_DIRECTIONS = AlternatingDirections()
 TENSOR_GRIDS = TensorGrids()

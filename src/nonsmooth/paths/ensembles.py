@@ -1,6 +1,6 @@
 """Ensembles of paths: blocks are simulated in parallel and their results added in order."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
@@ -139,6 +139,62 @@ def over_blocks(
     for result in parallel(run, sampling, sum(steps for steps, _ in grid)):
         require_finite(result)
         yield result
+
+
+def occupation(
+    scenes: Sequence[Scene],
+    times: ArrayLike,
+    sampling: Sampling,
+    edges: Mapping[str, np.ndarray],
+    keys: Sequence[tuple[str, ...]],
+) -> Iterator[dict[tuple[str, ...], np.ndarray]]:
+    """Simulate paths and count how many are in which cell, at all output times together.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Equal but for their starts, which blocks of paths take in turn.
+    times : array_like, shape (t,)
+        Increasing output times, "1".
+    sampling : Sampling
+    edges : dict
+        Maps the names of variables to the edges of their cells.
+    keys : sequence of tuple of str
+        Names of one or two variables, whose cells are counted.
+
+    Yields
+    ------
+    dict
+        Maps keys to counts, for one block after the other.
+
+    Raises
+    ------
+    SceneError
+        If a parameter is out of range or a path diverges.
+    ToleranceError
+        If the simulation would take too long.
+    """
+    grid = equal_steps(times, sampling.step)
+    coefficients = _coefficients(scenes[0], grid, sampling, control=False)
+    rows = {s.name: row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in edges}
+
+    def run(job):
+        block, count = job
+        panel = new_panel(scenes[block % len(scenes)], sampling.seed, block, sampling.precision)
+        # counts beyond the cells are in the first and last entries, which are cut off
+        counts = {key: np.zeros([len(edges[name]) + 1 for name in key], int) for key in keys}
+        for steps, h in grid:
+            march(coefficients[h], panel, count, steps, *EVERYWHERE)
+            cells = {
+                name: np.searchsorted(edges[name], panel.data[row, :count], side="right")
+                for name, row in rows.items()
+            }
+            for key, found in counts.items():
+                np.add.at(found, tuple(cells[name] for name in key), 1)
+        require_finite(panel.data[list(rows.values()), :count])
+        return {key: found[(slice(1, -1),) * len(key)] for key, found in counts.items()}
+
+    yield from parallel(run, sampling, sum(steps for steps, _ in grid))
 
 
 def paths_at(scene: Scene, times: ArrayLike, sampling: Sampling) -> np.ndarray:

@@ -6,7 +6,7 @@ public function, which chooses between methods by the scene and the tolerance.
 - `asymptotic_variance.asymptotic_variance`: gamma^2
 - `mean.mean`: E g
 - `variance.variance`: mean and variance of int_0^tau g over finite times
-- `invariant_density.invariant_density`: the density that the state settles to
+- `density.invariant_density`: the density that the state settles to
 - `spectral_gap.spectral_gap`: the rate at which correlations decay
 - `gamma2_on_grids`, `moments_on_grids`: gamma^2 and v(0, tau) on grids of elements
 - `sampled_gamma2`, `sampled_moments`: the same by Monte Carlo

@@ -221,7 +221,7 @@ def sampled_mean(
     ToleranceError
         If `tol` is not met, or the slope of the variance does not settle.
     """
-    own, paths, step = labelled(seed, "mean"), MONTE_CARLO.pilot_paths, _short_step(scene)
+    own, paths, step = labelled(seed, "mean"), MONTE_CARLO.pilot_paths, short_step(scene)
     order = registry.scheme(scene).weak_order(scene)
     for _ in range(MONTE_CARLO.attempts):
         sampling = Sampling(step, paths, own, threads=threads)
@@ -249,7 +249,7 @@ def _mean_bias(scene, times, sampling, order):
     return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
 
 
-def _short_step(scene):
+def short_step(scene):
     """First step for a stationary mean."""
     short = tuning.SAMPLED_GAMMA2.step_of_mean * min(1.0, 1 / scene.damping)
     return min(short, registry.longest_step(scene) / 2)

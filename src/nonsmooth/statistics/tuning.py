@@ -59,12 +59,13 @@ class InvariantDensity:
     """Densities on grids and in closed form; entries by the number of state variables."""
 
     # chosen: tolerance unless one is given; it is reached in seconds
-    tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-8, 2: 1e-6, 3: 1e-2, 4: 5e-2})
-    # chosen: points of the finest grid unless a tolerance is given, half a minute; peaks of colored
-    # friction and yielding take far more
-    largest: Mapping[int, float] = field(
-        default_factory=lambda: {2: math.inf, 3: 220_000, 4: math.inf}
-    )
+    tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-8, 2: 1e-4, 3: 1e-2, 4: 5e-2})
+    # chosen: points of the finest grid with elements that resolve layers, half a minute
+    largest_layered: int = 450_000
+    # chosen: factor on differences between such grids; at the kink they fall by 2 to 3 a level
+    layered_safety: float = 2.0
+    # chosen: points of the finest grid unless a tolerance is given, some seconds
+    quick: Mapping[int, float] = field(default_factory=lambda: {3: 220_000})
     first: int = 1  # chosen: level of the first grid
     # chosen: levels of the grids on which the box and the shift are fitted; cheap ones
     fitted: Mapping[int, int] = field(default_factory=lambda: {1: 1, 2: 1, 3: 1, 4: 0})
@@ -84,6 +85,23 @@ class InvariantDensity:
     safety: float = (
         2.0  # chosen: the error of a bin is so many times the largest difference near it
     )
+
+
+@dataclass(frozen=True)
+class SampledDensity:
+    """Densities as histograms."""
+
+    tolerance: float = 5e-2  # chosen: relative, unless given; most scenes reach it in seconds
+    stiff: float = 1e2  # chosen: n in the place of inf for the box that holds the points
+    blocks: int = 32  # chosen: of 1000 paths; so many are enough to tell their spread
+    first_time: float = 25.0  # chosen: of the first attempt
+    longest_time: float = 3200.0  # chosen: of the last, half a minute
+    attempts: int = 4  # chosen: with steps that become shorter where their bias is large
+    spare: float = 1.1  # chosen: by so much errors are aimed below the tolerance
+    coarser: int = 4  # chosen: factor on the step by which its bias is seen
+    dropped: float = 0.2  # chosen: share of the time until paths have forgotten their start
+    spacing: float = 1.0  # chosen: time between two observations, about that of correlations
+    false_alarm: float = 1e-3  # chosen: probability that chance exceeds the error in some cell
 
 
 @dataclass(frozen=True)
@@ -186,6 +204,7 @@ class Variance:
 GAMMA2_ON_GRIDS = Gamma2OnGrids()
 MOMENTS_ON_GRIDS = MomentsOnGrids()
 INVARIANT_DENSITY = InvariantDensity()
+SAMPLED_DENSITY = SampledDensity()
 SPECTRAL_GAP = SpectralGap()
 MEAN = Mean()
 GAMMA2 = Gamma2()

@@ -8,7 +8,7 @@ from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import x
-from nonsmooth.statistics.invariant_density import bin_averages
+from nonsmooth.statistics.density.bins import bin_averages
 from reproduction.jobs import artifact
 from reproduction.jobs.job import produce
 

@@ -16,6 +16,7 @@ from nonsmooth.grids.mesh.edges import (
     resolving,
 )
 from nonsmooth.grids.mesh.hermite import deviation, hermite
+from nonsmooth.grids.mesh.layers import layered_edges, resolves_layer
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
@@ -35,6 +36,7 @@ def axes(
     ends: Mapping[Symbol, float],
     levels: Mapping[Symbol, int],
     margin: float = 0.0,
+    of_density: bool = False,
 ) -> dict[Symbol, Axis]:
     """Discretise every variable of the state.
 
@@ -50,6 +52,10 @@ def axes(
     margin : float
         Width of an element that is added on either side of the box, relative to the half width, to
         see whether the box is too small. Polynomials of a normal variable need no box.
+    of_density : bool
+        Whether densities are solved for, in the place of functions. Functions are continued beyond
+        the box by their polynomials, to which mass would be lost; so elements of degree 0 are added
+        for densities, from which it comes back. The other elements then resolve layers.
 
     Returns
     -------
@@ -57,28 +63,42 @@ def axes(
         Maps symbols, in the order of the axes, to `Axis`.
     """
     made, wells, chosen = {}, potentials(scene, ends), tuning.HERMITE
+    layered = of_density and resolves_layer(scene, ends[scene.noise.driven])
     for symbol in variables(scene):
         level, end = levels[symbol], ends[symbol]
         if len(levels) > 2 and (spread := deviation(scene, symbol)) is not None:
             made[symbol] = hermite(chosen.fewest + chosen.added * level, spread, end)
             continue
-        edges = element_edges(scene, symbol, end, _layers(symbol, levels))
+        if layered:
+            edges = layered_edges(scene, symbol, end, level)
+        else:
+            edges = element_edges(scene, symbol, end, _layers(symbol, levels))
         if symbol in wells:
             potential, temperature = wells[symbol]
             edges = resolving(edges, vectorised(potential, (symbol,)), temperature)
+        # within a wall the margin is relative to the depth of the wall, which may be much
+        # smaller than the half width
+        scale = end - kinks(scene)[x] if symbol == x and has_walls(scene, end) else end
         if margin:
-            # within a wall the margin is relative to the depth of the wall, which may be much
-            # smaller than the half width
-            scale = end - kinks(scene)[x] if symbol == x and has_walls(scene, end) else end
-            edges = np.concatenate([[-end - margin * scale], edges, [end + margin * scale]])
+            edges = _wider(edges, margin * scale)
         if symbol == scene.noise.driven:
             # Without a kink the number of elements is odd. Odd degrees then make the number of
             # nodes even, so that symmetry can be used.
             stride = 2 if is_smooth(scene, symbol, end) else 1
-            made[symbol] = continuous(edges, 3 + stride * level)
-        else:
-            made[symbol] = discontinuous(edges, 2 + level)
+            degree = tuning.LAYERS.degree + level if layered else 2 + stride * level
+            made[symbol] = continuous(edges, 1 + degree, closed=of_density)
+            continue
+        degrees = np.full(len(edges) - 1, tuning.LAYERS.degree if layered else 2) + level
+        if of_density:
+            edges = _wider(edges, tuning.LAYERS.rim * scale)
+            degrees = np.concatenate([[0], degrees, [0]])
+        made[symbol] = discontinuous(edges, degrees)
     return made
+
+
+def _wider(edges, margin):
+    """Add an element on either side."""
+    return np.concatenate([[edges[0] - margin], edges, [edges[-1] + margin]])
 
 
 def _layers(symbol, levels):

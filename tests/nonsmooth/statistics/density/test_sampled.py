@@ -1,0 +1,108 @@
+"""Densities by Monte Carlo: averages over cells, of every scene and at n = inf."""
+
+import math
+
+import numpy as np
+import pytest
+
+import nonsmooth as ns
+from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.statistics.density.bins import bin_averages
+
+VELOCITIES, DISPLACEMENTS = np.linspace(-2, 2, 21), np.linspace(-0.9, 0.9, 10)
+STICKING = ns.Scene("friction", "langevin", n=math.inf)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        ns.Scene("friction", n=math.inf),
+        ns.Scene("obstacle", n=math.inf, potential="x**2/2"),
+        ns.Scene("obstacle", n=100, potential="x**2/2"),
+    ],
+)
+def test_closed_forms_are_within_the_errors(scene):
+    """Of averages over cells, of which chance exceeds one with a probability of 1e-3."""
+    points = {"y": VELOCITIES, "x": DISPLACEMENTS}
+    points = {name: points[name] for name in scene.state}
+    found = ns.invariant_density(scene, 0.05, points, "monte_carlo", seed=1)
+    for name, z in points.items():
+        middle = (z[1:] + z[:-1]) / 2
+        edges = np.concatenate([[2 * z[0] - middle[0]], middle, [2 * z[-1] - middle[-1]]])
+        exact, _ = bin_averages(scene, {name: edges}, 1e-6)[name]
+        error = float(found[f"density_{name}_error"])
+        assert np.all(np.abs(found[f"density_{name}"] - exact) <= error)
+        assert error <= 0.05 * float(found[f"density_{name}"].max())
+        assert found[f"density_{name}"].attrs["cell_methods"] == f"{name}: mean"
+
+
+def test_grids_are_within_the_errors():
+    """Averages over cells of a yielding structure, marginals and both variables alike."""
+    scene = ns.Scene("elasto_plastic", n=10, potential="x**2/2")
+    points = {"y": VELOCITIES, "x": DISPLACEMENTS}
+    sampled = ns.invariant_density(scene, 0.05, points, "monte_carlo")
+    fine = {
+        name: np.linspace(1.5 * z[0] - z[1] / 2, 1.5 * z[-1] - z[-2] / 2, 20 * len(z) + 1)
+        for name, z in points.items()
+    }
+    middles = {name: (z[1:] + z[:-1]) / 2 for name, z in fine.items()}
+    solved = ns.invariant_density(scene, 1e-3, middles, "deterministic")
+    for key in ("y", "x", "y_x"):
+        name = f"density_{key}"
+        value = solved[name].values
+        for axis in range(value.ndim):  # the mean of 20 points in each cell
+            value = value.reshape(*value.shape[:axis], -1, 20, *value.shape[axis + 1 :])
+            value = value.mean(axis=axis + 1)
+        gap = np.max(np.abs(value - sampled[name]))
+        assert gap <= float(sampled[f"{name}_error"] + solved[f"{name}_error"])
+
+
+def test_mass_at_rest_does_not_shrink_with_its_cell():
+    """Friction holds the velocity at 0 for a share of the time, in a cell however small."""
+    held = []
+    for width in (1e-2, 1e-4):
+        points = {"eta": np.linspace(-2, 2, 9), "y": np.array([-width, 0.0, width])}
+        found = ns.invariant_density(STICKING, 0.05, points)
+        held.append([float(found.density_y[1]) * width, float(found.density_y_error) * width])
+    (wide, uncertain), (narrow, less) = held
+    assert 0.3 < narrow <= wide + uncertain + less
+    assert wide - narrow < 0.05
+
+
+def test_threads_change_no_bit():
+    """Blocks are added in their order; and the law of an odd scene is its own mirror image."""
+    points = {"eta": np.linspace(-2, 2, 5), "y": np.linspace(-1, 1, 5)}
+    one, two = (ns.invariant_density(STICKING, 0.1, points, threads=count) for count in (1, 2))
+    assert one.identical(two)
+    assert np.allclose(one.density_eta_y, one.density_eta_y[::-1, ::-1])
+
+
+def test_what_cannot_be_sampled_is_refused():
+    """A single point has no cell; a tolerance out of reach leaves what was found."""
+    with pytest.raises(SceneError, match="two increasing points"):
+        ns.invariant_density(STICKING, points={"eta": [0.0], "y": [0.0, 1.0]})
+    with pytest.raises(SceneError, match="method='monte_carlo'"):
+        ns.invariant_density(STICKING, method="deterministic")
+
+
+@pytest.mark.slow
+def test_a_tolerance_out_of_reach_leaves_what_was_found():
+    """The message has the error, and the result is what was asked for."""
+    points = {"eta": np.linspace(-2, 2, 5), "y": np.linspace(-1, 1, 5)}
+    with pytest.raises(ToleranceError, match="relative error of") as refused:
+        ns.invariant_density(STICKING, 1e-5, points)
+    assert float(refused.value.result.density_y_error) < 1e-2
+
+
+@pytest.mark.slow
+def test_layers_that_no_grid_resolves_are_sampled():
+    """The others stay as they were solved."""
+    scene = ns.Scene("elasto_plastic", n=1e4, potential="x**2/2")
+    points = {"y": VELOCITIES, "x": np.linspace(-1, 1, 11)}
+    found = ns.invariant_density(scene, points=points)
+    assert "cell_methods" not in found.density_y.attrs
+    assert {"y: x: mean", "x: mean"} == {
+        found[f"density_{key}"].attrs["cell_methods"] for key in ("x", "y_x")
+    }
+    for key in ("y", "x", "y_x"):
+        assert float(found[f"density_{key}_error"]) <= 0.05 * float(found[f"density_{key}"].max())
