@@ -44,6 +44,8 @@ class AlternatingSolver:
 
     Attributes
     ----------
+    scale : numpy.ndarray
+        Weights of residuals and, where functions are compared, of their values.
     iterations : int
         Number that the last solution took.
     most : int
@@ -79,7 +81,7 @@ class AlternatingSolver:
         # weights the corners of the box would count most. Between walls the density of the
         # displacement does not fall off, so that the weight does not depend on it.
         flat = scene.mechanics.argument if scene.mechanics.argument == x else None
-        self._scale = self.fold(np.sqrt(_normal(axes, flat)))
+        self.scale = self.fold(np.sqrt(_normal(axes, flat)))
 
     def _noise_matrices(self, scene, noise):
         """Return the generator L of the noise, on functions that are odd and even in it."""
@@ -175,7 +177,7 @@ class AlternatingSolver:
 
         The integral of u over the measure is then the mean of f.
         """
-        ones, measure, scale = np.ones(right.size), self._measure, self._scale
+        ones, measure, scale = np.ones(right.size), self._measure, self.scale
         if adjoint:
             ones, measure, scale = measure, ones, ones
         odd = self.mirrored and parity == ODD

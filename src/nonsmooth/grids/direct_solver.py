@@ -178,6 +178,7 @@ class DirectSolver:
         self.generator = assemble(scene, axes)
         self.size = self.generator.shape[0]
         self.mirrored = mirrored
+        self.scale = np.ones(self.fold(np.empty(self.size)).size)
         self._factors: dict[int | tuple[float, int], SparseFactors | _Factors] = {}
 
     def fold(self, whole: np.ndarray) -> np.ndarray:

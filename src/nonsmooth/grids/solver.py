@@ -28,9 +28,13 @@ class PoissonSolver(Protocol):
     ----------
     mirrored : bool
         Whether functions live on half of the grid and have a parity.
+    scale : numpy.ndarray
+        Folded; weights that make functions small where the invariant measure has hardly any mass,
+        and an iterative solver hardly any accuracy.
     """
 
     mirrored: bool
+    scale: np.ndarray
 
     def fold(self, whole: np.ndarray, /) -> np.ndarray:
         """Take a function from the whole grid to the nodes that are solved on.

@@ -6,7 +6,7 @@ combined would add.
 
 import functools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from nonsmooth.errors import ToleranceError
@@ -50,6 +50,7 @@ def combined(
     functional: Callable[[Scene, Grid, float], float],
     allowed: Callable[[float, float], float],
     floor: Callable[[Scene, Grid, float], float] = lambda scene, grid, accuracy: 0.0,
+    first: Mapping[int, int] = tuning.GAMMA2_ON_GRIDS.coarse,
 ) -> Combined:
     """Compute a functional to a tolerance, if that is affordable.
 
@@ -66,6 +67,8 @@ def combined(
     floor : callable, optional
         Takes the arguments of `functional`; returns the error that cancelling terms leave. A value
         below its error is not refined further once that is below the floor.
+    first : mapping, optional
+        Level of the first grid, by the number of variables.
 
     Returns
     -------
@@ -80,13 +83,13 @@ def combined(
         If the equations of the coarsest grid cannot be solved.
     """
     if not math.isinf(scene.n):
-        return _combined(scene, tol, functional, allowed, floor)
+        return _combined(scene, tol, functional, allowed, floor, first)
     chosen = tuning.GAMMA2_ON_GRIDS
     # the rates of convergence are n^(-1/2) where a wall is hit elastically, else 1/n
     elastic = scene.mechanics.in_potential
     stiff = chosen.stiff_elastic if elastic else chosen.stiff
     softer = scene.with_n(chosen.softer * stiff)
-    found = _combined(scene.with_n(stiff), tol / 2, functional, allowed, floor)
+    found = _combined(scene.with_n(stiff), tol / 2, functional, allowed, floor, first)
     fitted_below = replace(found.grid, ends=narrowed(softer, found.grid.ends, found.grid.ends))
     gap = functional(found.scene, found.grid, found.accuracy) - functional(
         softer, fitted_below, found.accuracy
@@ -96,11 +99,11 @@ def combined(
     return replace(found, value=found.value + rest, error=error)
 
 
-def _combined(scene, tol, functional, allowed, floor):
+def _combined(scene, tol, functional, allowed, floor, first):
     """Compute the functional for a finite n."""
     chosen, count = tuning.GAMMA2_ON_GRIDS, scene.dimension
     coarse = fitted(scene, depth_for(tol), chosen.fitted[count])
-    coarse = coarse.all_raised(chosen.coarse[count] - chosen.fitted[count])
+    coarse = coarse.all_raised(first[count] - chosen.fitted[count])
     on = functools.partial(functional, scene)
     base, accuracy, residual = _on_coarsest(coarse, tol, on, allowed)
     directions = _directions(coarse)

@@ -6,13 +6,14 @@ Theorem 5 of the paper says that there is such a rate.
 import math
 import time
 from collections.abc import Callable, Iterable
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 import scipy.sparse.linalg as spla
 
 from nonsmooth.checks import require_tolerance
-from nonsmooth.errors import SceneError, ToleranceError, answered
+from nonsmooth.errors import ToleranceError, answered
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.mesh.box_effect import BoxEffect
@@ -22,6 +23,7 @@ from nonsmooth.line import eigenfunctions
 from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.statistics import tuning
+from nonsmooth.statistics.combined_grids import combined
 
 
 def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
@@ -30,10 +32,9 @@ def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
     Parameters
     ----------
     scene : Scene
-        With one or two state variables and a finite n.
     tol : float, optional
-        Requested relative error; 1e-6 unless given, and what misses that is returned with a
-        warning.
+        Requested relative error; unless given, it is 1e-6 for one and two state variables, 1e-3 and
+        2e-2 for three and four, and what misses that is returned with a warning.
 
     Returns
     -------
@@ -41,38 +42,54 @@ def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
         The error is the difference between two grids, at least a part of the difference before,
         plus the effect of the finite box, plus rounding. From three grids on, the difference is
         multiplied by the square root of the factor by which differences shrink (the larger of the
-        last two such factors, at most 1), because errors shrink like differences.
+        last two such factors, at most 1), because errors shrink like differences. With more than
+        two variables, or n = inf and two, it is that of `combined_grids.combined`.
 
     Raises
     ------
     SceneError
-        If an argument is out of range, the state has more variables, or n is infinite and the state
-        two variables.
+        If an argument is out of range.
     ToleranceError
         If `tol` cannot be met; the best value is its `result`.
     """
     began = time.perf_counter()
     require_random(scene)
-    accuracy = tuning.SPECTRAL_GAP.tolerance if tol is None else require_tolerance(tol)
+    accuracy = require_tolerance(tuning.SPECTRAL_GAP.tol[scene.dimension] if tol is None else tol)
+    uniform = scene.is_line or (scene.dimension == 2 and not math.isinf(scene.n))
+    gap = _refined if uniform else _combined
 
     def present(found):
         return Estimate(*found, "spectral elements", time.perf_counter() - began)
 
-    return answered(lambda: _gap(scene, accuracy), present, tol_given=tol is not None)
+    return answered(lambda: gap(scene, accuracy), present, tol_given=tol is not None)
 
 
-def _gap(scene, tol):
-    """Find the gap and its error, refining until this is met."""
-    if scene.is_line:
-        levels, solve, box = _with_one_variable(scene)
-    elif scene.dimension == 2 and not math.isinf(scene.n):
-        levels, solve, box = _with_two_variables(scene, tol)
-    else:
-        raise SceneError(
-            f"the spectral gap is computed for one or two state variables and, for two, a finite "
-            f"n, not for ({', '.join(scene.state)}) at n = {scene.n:g}; measure the decay of "
-            "correlations by Monte Carlo"
-        )
+def _combined(scene, tol):
+    """Find the gap and its error, refining each variable as much as it needs."""
+    found = combined(
+        scene,
+        tol,
+        lambda scene, grid, accuracy: gap_on(scene, grid, accuracy)[0],
+        lambda value, tol: tol * value,
+        first=tuning.SPECTRAL_GAP.first,
+    )
+    if not found.error <= tol * found.value:
+        raise _missed(found.value, found.error, tol)
+    return found.value, found.error
+
+
+def _missed(value, error, tol):
+    return ToleranceError(
+        f"the spectral gap {value:.10g} has an error of {error:.1e}, above tol = {tol:g} relative; "
+        "loosen tol",
+        (value, error),
+    )
+
+
+def _refined(scene, tol):
+    """Find the gap and its error, refining all variables until this is met."""
+    with_one = scene.is_line
+    levels, solve, box = _with_one_variable(scene) if with_one else _with_two_variables(scene, tol)
 
     # two grids of two variables agree by chance too often
     least = 2 if scene.is_line else tuning.SPECTRAL_GAP.least_grids
@@ -92,11 +109,7 @@ def _gap(scene, tol):
             key=_of_unsettled,
         )
         value, reached = found[-1][0], _of_unsettled(found) + beyond
-        raise ToleranceError(
-            f"the spectral gap {value:.10g} has an error of {reached:.1e}, above tol = {tol:g} "
-            "relative; loosen tol",
-            (value, reached),
-        )
+        raise _missed(value, reached, tol)
     return value, own + beyond
 
 
@@ -172,10 +185,10 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     Parameters
     ----------
     scene : Scene
-        With two state variables.
+        With two to four state variables and a finite n.
     grid : Grid
     accuracy : float
-        Relative, of the iteration for eigenvalues.
+        Relative, of the iteration for eigenvalues, and of an iterative solver.
 
     Returns
     -------
@@ -187,26 +200,37 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     LinAlgError
         If the slowest mode on the grid does not decay, as all modes of a scene do.
     """
-    _, solver = tensor_grid.direct_solver(scene, grid)
-    wanted, slowest = tuning.SPECTRAL_GAP.wanted, []
+    _, solver = tensor_grid.solver(scene, grid)
+    chosen, slowest = tuning.SPECTRAL_GAP, []
+    direct = len(grid.levels) <= 2
+    backward = chosen.backward if direct else accuracy
+    wanted = chosen.wanted if direct else chosen.fewer
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
-        size = solver.matrix(parity).shape[0]
+        size = len(solver.scale)
         inverse = spla.LinearOperator(
-            (size, size), lambda values, parity=parity: solver.solve(values, parity)[0], dtype=float
+            (size, size), partial(_inverse, solver, parity, accuracy), dtype=float
         )
-        start = np.cos(np.arange(size))  # the same in every run
+        start = solver.scale * np.cos(np.arange(size))  # the same in every run
         # the iteration finds the slowest rate far more accurately than the other ones
         largest = spla.eigs(inverse, k=wanted, v0=start, tol=accuracy, return_eigenvectors=False)
         rates = 1 / largest[np.abs(largest) > 1e-12]
-        slowest.append(min((rate.real, _moved(rates, rate)) for rate in rates))
+        slowest.append(min((rate.real, _moved(rates, rate, backward)) for rate in rates))
     rate, moved = min(slowest)
     if rate <= 0:
         raise np.linalg.LinAlgError("a mode on the grid does not decay")
     return float(rate), float(moved + accuracy * rate)
 
 
-def _moved(rates, rate):
-    """Bound how far rounding moves an eigenvalue; this is more if another one is close to it."""
-    chosen = tuning.SPECTRAL_GAP
+def _inverse(solver, parity, accuracy, values):
+    """Apply -A^-1 to a weighted function; constants, which are even, become 0."""
+    solution = solver.solve(values / solver.scale, parity, accuracy)[0]
+    if parity == EVEN:
+        solution = solution - np.average(solution, weights=solver.scale)
+    return solver.scale * solution
+
+
+def _moved(rates, rate, backward):
+    """Bound how far an error of the operator moves an eigenvalue; close ones are moved more."""
     gap = np.sort(np.abs(rates - rate))[1] / abs(rate)
-    return abs(rate) * (chosen.rounding + chosen.backward / max(gap, math.sqrt(chosen.backward)))
+    rounding = tuning.SPECTRAL_GAP.rounding
+    return abs(rate) * (rounding + backward / max(gap, math.sqrt(backward)))

@@ -108,9 +108,13 @@ class SampledDensity:
 class SpectralGap:
     """The slowest eigenvalue."""
 
-    tolerance: float = 1e-6  # chosen: relative, unless given; it is reached in seconds
+    # chosen: relative, unless given, by the number of variables; it is reached within a minute
+    tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-6, 2: 1e-6, 3: 1e-3, 4: 2e-2})
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
+    # chosen: levels of the first grids of those that are combined
+    first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 0, 4: 0})
+    fewer: int = 4  # chosen: the same with three and four variables, where each takes longer
     fitted: int = 1  # chosen: level on which the box is fitted
     finest: int = 6  # chosen: last level; bounds the time to some 20 s
     # chosen: largest factor by which a level reduces the error; if changes fall by more, the error

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.ensembles import paths_at
 from nonsmooth.paths.sampling import Sampling
 from references import LAMBDA_LIMIT
@@ -69,7 +69,32 @@ def test_finer_tolerances_keep_what_coarser_ones_know(tol):
     assert fine.error <= coarse.error
 
 
-def test_more_variables_are_refused():
-    """The error is one line that says what to do."""
-    with pytest.raises(SceneError, match="Monte Carlo"):
-        ns.spectral_gap(ns.Scene("elasto_plastic", "langevin", potential="x**2/2"))
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", [0.3, 1.0])
+def test_linear_oscillator_with_colored_noise(rate):
+    """With three variables the slowest of the noise's rate and the oscillator's, 1/2."""
+    scene = ns.Scene(
+        "obstacle", ns.OrnsteinUhlenbeck(rate), 1e-14, potential="x**2/2", observable="x"
+    )
+    found = ns.spectral_gap(scene)
+    assert abs(found.value - min(rate, 0.5)) <= found.error <= 1e-3 * found.value
+
+
+@pytest.mark.slow
+def test_yielding_with_colored_noise():
+    """A gap of three variables that no other method knows, at two tolerances."""
+    scene = ns.Scene("elasto_plastic", "langevin", n=10, potential="x**2/2")
+    loose, tight = (ns.spectral_gap(scene, tol) for tol in (1e-2, 1e-3))
+    assert abs(loose.value - tight.value) <= loose.error + tight.error
+    assert tight.error <= 1e-3 * tight.value
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("model", "n"), [("elasto_plastic", 1e6), ("obstacle", 1e10)])
+def test_the_nonsmooth_limit(model, n):
+    """A large n is 1/n, or n^(-1/2) with elastic walls, from it."""
+    g = "y" if model == "elasto_plastic" else "x"
+    scene = ns.Scene(model, n=n, potential="x**2/2", observable=g)
+    limit, stiff = ns.spectral_gap(scene.with_n(np.inf), 1e-5), ns.spectral_gap(scene, 1e-5)
+    rest = n ** (-0.5 if model == "obstacle" else -1.0)
+    assert abs(limit.value - stiff.value) <= limit.error + stiff.error + 2 * rest
