@@ -75,7 +75,7 @@ def _combined(scene, tol):
     )
     if not found.error <= tol * found.value:
         raise _missed(found.value, found.error, tol)
-    return found.value, found.error
+    return float(found.value), float(found.error)
 
 
 def _missed(value, error, tol):

@@ -113,7 +113,7 @@ class SpectralGap:
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
     # chosen: levels of the first grids of those that are combined
-    first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 0, 4: 0})
+    first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 1, 4: 0})
     fewer: int = 4  # chosen: the same with three and four variables, where each takes longer
     fitted: int = 1  # chosen: level on which the box is fitted
     finest: int = 6  # chosen: last level; bounds the time to some 20 s
