@@ -1,5 +1,6 @@
 """Ensembles of paths: blocks are simulated in parallel and their results added in order."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any
@@ -11,6 +12,7 @@ from nonsmooth.errors import SceneError
 from nonsmooth.paths.control_variate import poisson_slope
 from nonsmooth.paths.cost import require_memory
 from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, extremes, new_panel
+from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.parallel import kept_at_once, parallel
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
@@ -148,7 +150,7 @@ def occupation(
     edges: Mapping[str, np.ndarray],
     keys: Sequence[tuple[str, ...]],
 ) -> Iterator[dict[tuple[str, ...], np.ndarray]]:
-    """Simulate paths and count how many are in which cell, at all output times together.
+    """Simulate paths and count how many are in which cell, at output times together.
 
     Parameters
     ----------
@@ -165,7 +167,8 @@ def occupation(
     Yields
     ------
     dict
-        Maps keys to counts, for one block after the other.
+        Maps keys to counts, first over the earlier half of the times and then over the later, for
+        one block after the other. Cells contain their lower edges, the last one its upper, too.
 
     Raises
     ------
@@ -175,6 +178,9 @@ def occupation(
         If the simulation would take too long.
     """
     grid = equal_steps(times, sampling.step)
+    cells = sum(math.prod(len(edges[name]) for name in key) for key in keys)
+    require_memory(4 * cells * sampling.paths / BLOCK)
+    ends = {name: np.append(e[:-1], np.nextafter(e[-1], np.inf)) for name, e in edges.items()}
     coefficients = _coefficients(scenes[0], grid, sampling, control=False)
     rows = {s.name: row for row, s in zip(STATE, STATE_VARIABLES, strict=True) if s.name in edges}
 
@@ -182,17 +188,18 @@ def occupation(
         block, count = job
         panel = new_panel(scenes[block % len(scenes)], sampling.seed, block, sampling.precision)
         # counts beyond the cells are in the first and last entries, which are cut off
-        counts = {key: np.zeros([len(edges[name]) + 1 for name in key], int) for key in keys}
-        for steps, h in grid:
+        counts = {key: np.zeros([2, *(len(ends[name]) + 1 for name in key)], int) for key in keys}
+        for place, (steps, h) in enumerate(grid):
+            half = 2 * place // len(grid)
             march(coefficients[h], panel, count, steps, *EVERYWHERE)
             cells = {
-                name: np.searchsorted(edges[name], panel.data[row, :count], side="right")
+                name: np.searchsorted(ends[name], panel.data[row, :count], side="right")
                 for name, row in rows.items()
             }
             for key, found in counts.items():
-                np.add.at(found, tuple(cells[name] for name in key), 1)
+                np.add.at(found[half], tuple(cells[name] for name in key), 1)
         require_finite(panel.data[list(rows.values()), :count])
-        return {key: found[(slice(1, -1),) * len(key)] for key, found in counts.items()}
+        return {key: found[:, *(slice(1, -1),) * len(key)] for key, found in counts.items()}
 
     yield from parallel(run, sampling, sum(steps for steps, _ in grid))
 

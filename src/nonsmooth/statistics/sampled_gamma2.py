@@ -249,16 +249,16 @@ def _mean_bias(scene, times, sampling, order):
     return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
 
 
-def short_step(scene):
-    """First step for a stationary mean."""
+def short_step(scene: Scene) -> float:
+    """Return the first step for a stationary mean."""
     short = tuning.SAMPLED_GAMMA2.step_of_mean * min(1.0, 1 / scene.damping)
     return min(short, registry.longest_step(scene) / 2)
 
 
-def _first_times(scene):
+def first_times(scene: Scene) -> tuple[float, ...]:
     """Choose the times between which the slope is first taken.
 
-    They are longer if the drift relaxes slowly.
+    They are longer if the drift relaxes slowly: the first is at least two relaxation times.
     """
     settled = tuning.SAMPLED_GAMMA2
     try:
@@ -276,7 +276,7 @@ def _settled(scene, sampling):
     this, a few paths start from each well of the potentials (the scouts); all slopes have to agree.
     """
     elsewhere = [scene.with_start(start) for start in potential_wells.starts(scene)]
-    times = _first_times(scene)
+    times = first_times(scene)
     for attempt in range(tuning.SAMPLED_GAMMA2.doublings):
         scouts = []
         own = sampling.labelled(attempt)

@@ -21,7 +21,7 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.line import eigenfunctions
 from nonsmooth.refine import until_agreement
-from nonsmooth.scenes.scene import Scene, require_random
+from nonsmooth.scenes.scene import Scene, require_random, require_velocity
 from nonsmooth.statistics import tuning
 from nonsmooth.statistics.combined_grids import combined
 
@@ -48,12 +48,13 @@ def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
     Raises
     ------
     SceneError
-        If an argument is out of range.
+        If an argument is out of range, or g is a function of the noise alone.
     ToleranceError
         If `tol` cannot be met; the best value is its `result`.
     """
     began = time.perf_counter()
     require_random(scene)
+    require_velocity(scene, "choose one with the velocity, whose gap is at most that of the noise")
     accuracy = require_tolerance(tuning.SPECTRAL_GAP.tol[scene.dimension] if tol is None else tol)
     uniform = scene.is_line or (scene.dimension == 2 and not math.isinf(scene.n))
     gap = _refined if uniform else _combined
@@ -69,13 +70,21 @@ def _combined(scene, tol):
     found = combined(
         scene,
         tol,
-        lambda scene, grid, accuracy: gap_on(scene, grid, accuracy)[0],
+        _on_grid,
         lambda value, tol: tol * value,
         first=tuning.SPECTRAL_GAP.first,
     )
     if not found.error <= tol * found.value:
         raise _missed(found.value, found.error, tol)
     return float(found.value), float(found.error)
+
+
+def _on_grid(scene, grid, accuracy):
+    """Compute the gap on a grid; a grid that is too coarse for it misses the tolerance."""
+    try:
+        return gap_on(scene, grid, accuracy)[0]
+    except (np.linalg.LinAlgError, spla.ArpackError) as unsolved:
+        raise ToleranceError(f"the spectral gap was not found on a grid ({unsolved})") from None
 
 
 def _missed(value, error, tol):
@@ -88,8 +97,9 @@ def _missed(value, error, tol):
 
 def _refined(scene, tol):
     """Find the gap and its error, refining all variables until this is met."""
-    with_one = scene.is_line
-    levels, solve, box = _with_one_variable(scene) if with_one else _with_two_variables(scene, tol)
+    levels, solve, box = (
+        _with_one_variable(scene) if scene.is_line else _with_two_variables(scene, tol)
+    )
 
     # two grids of two variables agree by chance too often
     least = 2 if scene.is_line else tuning.SPECTRAL_GAP.least_grids

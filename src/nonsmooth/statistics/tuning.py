@@ -92,14 +92,19 @@ class SampledDensity:
     """Densities as histograms."""
 
     tolerance: float = 5e-2  # chosen: relative, unless given; most scenes reach it in seconds
-    stiff: float = 1e2  # chosen: n in the place of inf for the box that holds the points
+    least_tolerance: float = 1e-3  # chosen: the least that is tried
+    soft: float = 1e2  # chosen: n in the place of inf for the box that holds the points
     blocks: int = 32  # chosen: of 1000 paths; so many are enough to tell their spread
     first_time: float = 25.0  # chosen: of the first attempt
     longest_time: float = 3200.0  # chosen: of the last, half a minute
+    most_steps: float = 1.6e5  # chosen: the same in steps, where they must be short
+    stable: float = 0.9  # chosen: part of the longest stable step for the coarser of the two
+    relaxed: float = 2.5  # chosen: so many first times of gamma^2 until a start is forgotten
     attempts: int = 4  # chosen: with steps that become shorter where their bias is large
     spare: float = 1.1  # chosen: by so much errors are aimed below the tolerance
     coarser: int = 4  # chosen: factor on the step by which its bias is seen
     dropped: float = 0.2  # chosen: share of the time until paths have forgotten their start
+    symmetric: float = 1e-9  # chosen: deviation of symmetric edges from symmetry, in cells
     spacing: float = 1.0  # chosen: time between two observations, about that of correlations
     false_alarm: float = 1e-3  # chosen: probability that chance exceeds the error in some cell
 
@@ -108,13 +113,13 @@ class SampledDensity:
 class SpectralGap:
     """The slowest eigenvalue."""
 
-    # chosen: relative, unless given, by the number of variables; it is reached within a minute
+    # chosen: relative, unless given, by the number of variables; it is reached in about a minute
     tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-6, 2: 1e-6, 3: 1e-3, 4: 2e-2})
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
+    fewer: int = 4  # chosen: the same with three and four variables, where each takes longer
     # chosen: levels of the first grids of those that are combined
     first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 1, 4: 0})
-    fewer: int = 4  # chosen: the same with three and four variables, where each takes longer
     fitted: int = 1  # chosen: level on which the box is fitted
     finest: int = 6  # chosen: last level; bounds the time to some 20 s
     # chosen: largest factor by which a level reduces the error; if changes fall by more, the error

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.errors import ToleranceError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.paths.ensembles import paths_at
 from nonsmooth.paths.sampling import Sampling
 from references import LAMBDA_LIMIT
@@ -76,8 +76,14 @@ def test_linear_oscillator_with_colored_noise(rate):
     scene = ns.Scene(
         "obstacle", ns.OrnsteinUhlenbeck(rate), 1e-14, potential="x**2/2", observable="x"
     )
-    found = ns.spectral_gap(scene)
-    assert abs(found.value - min(rate, 0.5)) <= found.error <= 1e-3 * found.value
+    found = ns.spectral_gap(scene, 1e-2)
+    assert abs(found.value - min(rate, 0.5)) <= found.error <= 1e-2 * found.value
+
+
+def test_noise_alone_is_refused():
+    """The solvers need the velocity."""
+    with pytest.raises(SceneError, match="noise alone"):
+        ns.spectral_gap(ns.Scene("friction", "langevin", observable="eta"))
 
 
 @pytest.mark.slow

@@ -1,5 +1,6 @@
 """What every method finds: a density at points, with its error."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -30,8 +31,9 @@ Found = dict[tuple[str, ...], Density]
 
 
 def relative_error(density: Density) -> float:
-    """Return the error relative to the largest value."""
-    return density.error / max(float(np.max(density.value)), np.finfo(float).tiny)
+    """Return the error relative to the largest value; inf if this is 0."""
+    largest = float(np.max(density.value))
+    return density.error / largest if largest > 0 else math.inf
 
 
 def keys(scene: Scene) -> list[tuple[str, ...]]:

@@ -43,15 +43,15 @@ def invariant_density(
     ----------
     scene : Scene
     tol : float, optional
-        Error allowed, relative to the largest value of each density. Unless given, it is 1e-8,
-        1e-4, 1e-2 or 5e-2 for one to four variables without Monte Carlo and 2e-2 with it, and what
-        misses that within about half a minute is returned with a warning.
+        Error allowed, relative to the largest value of each density. Unless given, it is 5e-2, and
+        grids aim at 1e-8, 1e-4, 1e-2 or 5e-2 for one to four variables; what misses 5e-2 is
+        returned with a warning. ``"deterministic"`` warns of what misses its aim.
     points : dict, optional
         Maps the names of all variables of the state to points at which the densities are wanted;
         201 equidistant ones over the support unless given.
     method : {"deterministic", "monte_carlo"}, optional
-        Unless given, ``"deterministic"``; ``"monte_carlo"`` for what that does not reach, and at
-        n = inf, if there is no closed form.
+        Unless given, ``"deterministic"``; ``"monte_carlo"`` for what that does not reach, and, if
+        there is no closed form, at n = inf and for functions of the noise alone.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
@@ -79,37 +79,49 @@ def invariant_density(
     method = None if method is None else require_choice("method", method, METHODS)
     seed, threads = require_seed(seed), require_threads(threads)
     closed = closed_form(scene) if method != "monte_carlo" else {}
-    if method == "deterministic" and math.isinf(scene.n) and not closed:
+    sampling = method == "monte_carlo" or math.isinf(scene.n) or "y" not in scene.state
+    if method == "deterministic" and sampling and not closed:
         raise SceneError(
-            "at n = inf the invariant measure of this package's models has no density in general; "
-            "choose a finite n or method='monte_carlo'"
+            "at n = inf, and without the velocity, the density is not solved for; choose a finite "
+            "n, another observable or method='monte_carlo'"
         )
     accuracy = tuning.INVARIANT_DENSITY.tol[scene.dimension] if tol is None else tol
     if closed:
         points = points or _equidistant(half_widths(scene, tensor_grid.depth_for(accuracy)))
         return _dataset(_of_closed_form(closed, points), points)
-    # at n = inf the support is that of a large n
-    grid = first_grid(scene.with_n(min(scene.n, tuning.SAMPLED_DENSITY.stiff)), accuracy)
-    points = points or _equidistant(_support(scene, grid))
+    grid = None if sampling else _grid(scene, accuracy, method)
+    if points is None:
+        points = _equidistant(_support(scene, accuracy) if grid is None else grid.ends)
 
     def solve():
-        if method != "monte_carlo" and not math.isinf(scene.n):
-            try:
-                return solved_densities(scene, grid, accuracy, points, quick=tol is None)
-            except ToleranceError as refused:
-                if method == "deterministic" or not are_cells(points):
-                    raise
-                return _completed(refused, scene, tol, points, seed, threads)
-        return sampled_densities(scene, tol, points, seed, threads)
+        if grid is None:
+            return sampled_densities(scene, tol, points, seed, threads)
+        try:
+            return solved_densities(scene, grid, accuracy, points, quick=tol is None)
+        except ToleranceError as refused:
+            if method == "deterministic" or not are_cells(points):
+                raise
+            return _completed(refused, scene, tol, points, seed, threads)
 
     return answered(solve, lambda found: _dataset(found, points), tol_given=tol is not None)
+
+
+def _grid(scene, accuracy, method):
+    """Return the first grid, or None if there is none and the method is free."""
+    try:
+        return answered(lambda: first_grid(scene, accuracy), lambda grid: grid)
+    except (SceneError, ToleranceError):
+        if method == "deterministic":
+            raise
+        return None
 
 
 def _completed(refused, scene, tol, points, seed, threads):
     """Replace what grids have not reached by histograms that have smaller errors."""
     solved = refused.result or {}
     allowed = tuning.SAMPLED_DENSITY.tolerance if tol is None else tol
-    if solved and all(relative_error(density) <= allowed for density in solved.values()):
+    reached = {key: part for key, part in solved.items() if relative_error(part) <= allowed}
+    if reached and len(reached) == len(solved):
         return solved
     try:
         sampled = sampled_densities(scene, tol, points, seed, threads)
@@ -118,7 +130,7 @@ def _completed(refused, scene, tol, points, seed, threads):
     found = {
         key: min((part[key] for part in (solved, sampled) if key in part), key=relative_error)
         for key in {**sampled, **solved}
-    }
+    } | reached
     worst = max(found, key=lambda key: relative_error(found[key]), default=None)
     if worst is None:
         raise refused
@@ -147,12 +159,21 @@ def _equidistant(ends):
     return {symbol.name: np.linspace(-end, end, count) for symbol, end in ends.items()}
 
 
-def _support(scene, grid):
-    """Return the half widths of the box; at n = inf a displacement ends at the walls."""
-    walled = math.isinf(scene.n) and scene.mechanics.argument == x
+def _support(scene, accuracy):
+    """Return half widths of a box for points; at n = inf a displacement ends at the walls."""
+    limit = math.isinf(scene.n)
+    soft = scene.with_n(tuning.SAMPLED_DENSITY.soft) if limit else scene
+    try:
+        grid = _grid(soft, accuracy, None) if "y" in scene.state else None
+        depth = tensor_grid.depth_for(accuracy)
+        ends = half_widths(soft, depth) if grid is None else grid.ends
+    except SceneError as unknown:
+        raise SceneError(f"{unknown}; here, give points of every variable") from None
+    walled = limit and scene.mechanics.argument == x
     return {
         symbol: scene.mechanics.wall if walled and symbol == x else end
-        for symbol, end in grid.ends.items()
+        for symbol, end in ends.items()
+        if symbol.name in scene.state
     }
 
 

@@ -48,7 +48,7 @@ def solved_densities(
     points : dict
         Of all variables.
     quick : bool
-        Whether to end after about half a minute.
+        Whether to end with grids that take some seconds.
 
     Returns
     -------
@@ -71,8 +71,8 @@ def solved_densities(
         for key, both in refined.items():
             value, error = not_negative(*both)
             # grids that miss a layer may agree on anything
-            known = np.max(value) if hidden and held in key else np.max(error)
-            found[key] = Density(value, float(known) + outside(value, tol))
+            known = math.inf if hidden and held in key else float(np.max(error))
+            found[key] = Density(value, known + outside(value, tol))
         return found
 
     found = answered(
@@ -119,7 +119,7 @@ def refined(
     solve : callable
         Takes a grid; returns a dict of arrays.
     quick : bool
-        Whether to end after about half a minute.
+        Whether to end with grids that take some seconds.
 
     Returns
     -------
@@ -149,7 +149,8 @@ def refined(
         return {key: safety * largest for key, largest in change.items()}
 
     def relative(values, difference):
-        return max(np.max(difference[key]) / np.max(values[key]) for key in values)
+        least = np.finfo(float).tiny
+        return max(np.max(difference[key]) / max(np.max(values[key]), least) for key in values)
 
     result = until_agreement(
         _affordable(scene, grid, quick),

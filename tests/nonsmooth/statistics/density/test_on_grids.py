@@ -1,4 +1,4 @@
-"""Densities on grids: exact marginals of the noise, fine grids, and layers against simulations."""
+"""Densities on grids: the exact marginal of the noise on fine grids, and layers."""
 
 import numpy as np
 import pytest

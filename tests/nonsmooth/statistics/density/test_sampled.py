@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy import integrate, stats
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
 from nonsmooth.statistics.density.bins import bin_averages
 
 VELOCITIES, DISPLACEMENTS = np.linspace(-2, 2, 21), np.linspace(-0.9, 0.9, 10)
@@ -69,6 +70,52 @@ def test_mass_at_rest_does_not_shrink_with_its_cell():
     assert wide - narrow < 0.05
 
 
+@pytest.mark.parametrize("rate", [1.0, pytest.param(0.02, marks=pytest.mark.slow)])
+def test_noise_alone_is_normal(rate):
+    """Of a g without the velocity, also if noise forgets its start only after 50 units of time."""
+    spread = math.sqrt(1 / (2 * rate))
+    z = np.linspace(-2 * spread, 2 * spread, 21)
+    scene = ns.Scene("friction", ns.OrnsteinUhlenbeck(rate), observable="eta")
+    found = ns.invariant_density(scene, points={"eta": z})
+    half = (z[1] - z[0]) / 2
+    shares = stats.norm.cdf(z + half, scale=spread) - stats.norm.cdf(z - half, scale=spread)
+    gap = np.abs(found.density_eta - shares / (2 * half))
+    assert np.all(gap <= float(found.density_eta_error))
+    assert float(found.density_eta_error) <= 0.05 * float(found.density_eta.max())
+
+
+def test_steep_potentials_are_sampled_with_stable_steps():
+    """Four times the step is below the longest one, too."""
+    noise = ns.Langevin("eta**4")
+    points = {"eta": np.linspace(-1, 1, 5), "y": np.linspace(-0.5, 0.5, 5)}
+    found = ns.invariant_density(ns.Scene("friction", noise, n=math.inf), 0.2, points)
+    total = integrate.quad(lambda eta: math.exp(-2 * eta**4), -4, 4)[0]
+    exact = [
+        integrate.quad(lambda eta: math.exp(-2 * eta**4), z - 0.25, z + 0.25)[0] / total / 0.5
+        for z in points["eta"]
+    ]
+    assert np.all(np.abs(found.density_eta - exact) <= float(found.density_eta_error))
+
+
+def test_walls_belong_to_the_last_cell():
+    """What a wall holds is counted if it is the edge of the cells, on either side."""
+    points = {"y": VELOCITIES, "x": np.linspace(-0.9, 0.9, 10)}
+    scene = ns.Scene("elasto_plastic", n=math.inf, potential="x**2/2")
+    found = ns.invariant_density(scene, 0.1, points)
+    total = float(found.density_x.sum()) * 0.2
+    assert abs(total - 1) <= 10 * 0.2 * float(found.density_x_error)
+
+
+@pytest.mark.slow
+def test_cells_that_no_path_visits_are_not_known():
+    """Their density is 0 within an error that is not 0."""
+    points = {"eta": np.linspace(-2, 2, 5), "y": np.array([50.0, 51.0])}
+    with pytest.warns(AccuracyWarning, match="values up to 0|averages up to 0"):
+        found = ns.invariant_density(STICKING, points=points)
+    assert float(found.density_y.max()) == 0
+    assert float(found.density_y_error) > 0
+
+
 def test_threads_change_no_bit():
     """Blocks are added in their order; and the law of an odd scene is its own mirror image."""
     points = {"eta": np.linspace(-2, 2, 5), "y": np.linspace(-1, 1, 5)}
@@ -88,9 +135,9 @@ def test_what_cannot_be_sampled_is_refused():
 @pytest.mark.slow
 def test_a_tolerance_out_of_reach_leaves_what_was_found():
     """The message has the error, and the result is what was asked for."""
-    points = {"eta": np.linspace(-2, 2, 5), "y": np.linspace(-1, 1, 5)}
+    points = {"eta": np.linspace(-2, 2, 81), "y": np.linspace(-1, 1, 81)}
     with pytest.raises(ToleranceError, match="relative error of") as refused:
-        ns.invariant_density(STICKING, 1e-5, points)
+        ns.invariant_density(STICKING, 1e-3, points)
     assert float(refused.value.result.density_y_error) < 1e-2
 
 
