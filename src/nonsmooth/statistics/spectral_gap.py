@@ -82,7 +82,7 @@ def _combined(scene, tol):
 def _on_grid(scene, grid, accuracy):
     """Compute the gap on a grid; a grid that is too coarse for it misses the tolerance."""
     try:
-        return gap_on(scene, grid, accuracy)[0]
+        return gap_on(scene, grid, min(accuracy, tuning.SPECTRAL_GAP.loosest))[0]
     except (np.linalg.LinAlgError, spla.ArpackError) as unsolved:
         raise ToleranceError(f"the spectral gap was not found on a grid ({unsolved})") from None
 

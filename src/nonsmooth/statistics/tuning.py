@@ -118,6 +118,7 @@ class SpectralGap:
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
     fewer: int = 4  # chosen: the same with three and four variables, where each takes longer
+    loosest: float = 2e-5  # chosen: residual of iterative solvers, at most
     # chosen: levels of the first grids of those that are combined
     first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 1, 4: 0})
     fitted: int = 1  # chosen: level on which the box is fitted

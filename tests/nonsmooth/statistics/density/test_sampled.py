@@ -138,7 +138,8 @@ def test_a_tolerance_out_of_reach_leaves_what_was_found():
     points = {"eta": np.linspace(-2, 2, 81), "y": np.linspace(-1, 1, 81)}
     with pytest.raises(ToleranceError, match="relative error of") as refused:
         ns.invariant_density(STICKING, 1e-3, points)
-    assert float(refused.value.result.density_y_error) < 1e-2
+    found = refused.value.result
+    assert 0 < float(found.density_y_error) < 0.05 * float(found.density_y.max())
 
 
 @pytest.mark.slow
