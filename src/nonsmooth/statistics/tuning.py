@@ -95,8 +95,7 @@ class SampledDensity:
     least_tolerance: float = 1e-3  # chosen: the least that is tried
     soft: float = 1e2  # chosen: n in the place of inf for the box that holds the points
     blocks: int = 32  # chosen: of 1000 paths; so many are enough to tell their spread
-    first_time: float = 25.0  # chosen: of the first attempt
-    longest_time: float = 3200.0  # chosen: of the last, half a minute
+    longest_time: float = 3200.0  # chosen: of the last attempt, half a minute
     most_steps: float = 1.6e5  # chosen: the same in steps, where they must be short
     stable: float = 0.9  # chosen: part of the longest stable step for the coarser of the two
     relaxed: float = 2.5  # chosen: so many first times of gamma^2 until a start is forgotten

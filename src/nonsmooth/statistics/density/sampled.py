@@ -79,7 +79,7 @@ def sampled_densities(
             f"{chosen.least_tolerance:g}"
         )
     step = min(short_step(scene), chosen.stable * registry.longest_step(scene) / chosen.coarser)
-    time = max(chosen.first_time, chosen.relaxed * first_times(scene)[0] / chosen.dropped)
+    time = chosen.relaxed * first_times(scene)[0] / chosen.dropped
     longest = max(min(chosen.longest_time, chosen.most_steps * step), time)
     found: Found = {}
     for attempt in range(chosen.attempts):
@@ -113,7 +113,9 @@ def _histograms(scene, time, points, sampling):
     chosen = tuning.SAMPLED_DENSITY
     edges = {name: _edges(z) for name, z in points.items()}
     coarser = replace(sampling.labelled("bias"), step=chosen.coarser * sampling.step)
-    times = np.arange(chosen.dropped * time, time, chosen.spacing)[1:]
+    # an even number, so that both halves of the time have as many
+    count = 2 * math.floor((1 - chosen.dropped) * time / chosen.spacing / 2)
+    times = chosen.dropped * time + chosen.spacing * np.arange(1, count + 1)
     observed = BLOCK * len(times)  # in each block
     fine, coarse = (_shares(scene, times, edges, own) for own in (sampling, coarser))
     found, bias = {}, 0.0
