@@ -91,9 +91,12 @@ def combined(
     softer = scene.with_n(chosen.softer * stiff)
     found = _combined(scene.with_n(stiff), tol / 2, functional, allowed, floor, first)
     fitted_below = replace(found.grid, ends=narrowed(softer, found.grid.ends, found.grid.ends))
-    gap = functional(found.scene, found.grid, found.accuracy) - functional(
-        softer, fitted_below, found.accuracy
-    )
+    try:
+        gap = functional(found.scene, found.grid, found.accuracy) - functional(
+            softer, fitted_below, found.accuracy
+        )
+    except ToleranceError:  # how far the limit is from the value for the large n remains unknown
+        return replace(found, error=math.inf)
     rest = gap / ((10 if elastic else 100) - 1)
     error = found.error + (0.2 if elastic else 1.0) * abs(rest)
     return replace(found, value=found.value + rest, error=error)

@@ -64,6 +64,9 @@ class InvariantDensity:
     largest_layered: int = 450_000
     # chosen: factor on differences between such grids; at the kink they fall by 2 to 3 a level
     layered_safety: float = 2.0
+    # chosen: the same for three and four variables where layers are missed; two levels of random
+    # scenes understated by up to 2.7
+    unresolved_safety: float = 3.0
     # chosen: points of the finest grid unless a tolerance is given, some seconds
     quick: Mapping[int, float] = field(default_factory=lambda: {3: 220_000})
     first: int = 1  # chosen: level of the first grid
@@ -74,6 +77,8 @@ class InvariantDensity:
     # chosen: largest factor by which a level reduces the error; if a difference falls by more, the
     # error has changed its sign
     gain: float = 10.0
+    # chosen: largest factor on a difference that is hardly smaller than the one before
+    slowest: float = 10.0
     points: int = 201  # chosen: number of points of a density unless points are given
     deepest: float = 80.0  # derived: exp(-80) is below rounding of the norm of a closed form
     gauss: int = 16  # chosen: Gauss points for each piece of a bin

@@ -85,6 +85,29 @@ def penalised(z, t, drive, rate, knot, inner, outer):
 
 
 @inlined
+def yielding(z, t, drive, knot, outer):
+    """Flow of z' = drive - phi_n'(z) over a time t, where phi_n' is 0 up to `knot`.
+
+    This is `penalised` with `inner` and `rate` 0, with half of the operations, as the speed is
+    constant between the knots.
+    """
+    zero, inverse = like(z, 0.0), like(z, 1.0) / outer
+    side = math.copysign(like(z, 1.0), drive)
+    z, speed = side * z, maximum(abs(drive), like(z, 1e-30))  # now it moves to the right
+    per_speed = like(z, 1.0) / speed
+    entry, farther = maximum(z, -knot), maximum(z, knot)
+    first = log1p(outer * (entry - z) * per_speed) * inverse
+    last = fma(maximum(knot - entry, zero), per_speed, first)
+    straight = minimum(fma(speed, t - first, entry), knot)
+    behind = t < first
+    place = where(behind, z, farther)
+    beyond = where(behind, entry - z, knot - farther)
+    left = where(behind, t, maximum(t - last, zero))
+    bent = fma(fma(outer, beyond, speed), _relaxed(left, outer, inverse), place)
+    return side * where(behind | (t > last), bent, straight)
+
+
+@inlined
 def at_rest(z, t, knot, inner):
     """Flow of z' = -phi_n'(z) for dry friction: constant speed 1, then exponential decay."""
     size = abs(z)
@@ -123,20 +146,22 @@ def spring_contact(y, x, t, omega):
     and a contact, which takes pi/omega. The state is mapped to its time on the orbit and back.
     """
     zero, one, pi = like(x, 0.0), like(x, 1.0), like(x, math.pi)
+    per_omega = one / omega
     side = math.copysign(one, where(abs(x) > one, x, y))
     depth = maximum(side * x - one, zero)
     bend = omega * depth
     speed = maximum(math.sqrt(fma(bend, bend, y * y)), like(x, 1e-18))
-    flight = like(x, 2.0) / speed
-    in_contact = flight + arctan2(bend, side * y) / omega
-    phase = t + where(depth > zero, in_contact, (side * x + one) / speed)
-    half = flight + pi / omega
+    per_speed = one / speed
+    flight = like(x, 2.0) * per_speed
+    in_contact = fma(arctan2(bend, side * y), per_omega, flight)
+    phase = t + where(depth > zero, in_contact, (side * x + one) * per_speed)
+    half = fma(pi, per_omega, flight)
     turns = np.floor(phase / half)
     phase = fma(-turns, half, phase)
     odd = turns - like(x, 2.0) * np.floor(turns * like(x, 0.5)) > zero
     sine, cosine = sincos(minimum(maximum(omega * (phase - flight), zero), pi))
     hits = phase > flight
-    ahead = where(hits, fma(speed, sine / omega, one), fma(speed, phase, -one))
+    ahead = where(hits, fma(speed, sine * per_omega, one), fma(speed, phase, -one))
     along = where(hits, speed * cosine, speed)
     turned = where(odd, -side, side)
     straight = fma(y, t, x)

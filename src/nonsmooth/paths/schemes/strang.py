@@ -68,16 +68,17 @@ class Strang(NamedTuple):
     """Coefficients of the splitting for one scene, one step and one precision.
 
     `penalty`, `noise` and `observable` are codes of their kinds. `moves` tells whether the
-    displacement is part of the state, `limit` whether n = inf, `dry` whether the penalty is the dry
-    friction of the paper, `linear` whether the noise's equation is linear, and `pushed` whether U'
-    acts. `knot`, `inner` and `outer` define the penalty force; `omega` is the root of `outer`, and
-    `rate` the damping in the flow of the velocity (0 for white noise, whose step has it).
-    `transition` (2 x 2, row by row, less the identity) and `factor` (lower triangle) are the
-    exact Gaussian step of the linear noise's (zeta, eta), or of one variable alone in the first
-    entries. `slope`, `first_drift`, `second_drift` and `formula` are addresses of U', of the
-    noise's drifts and of g; 0 where they are not used, as compiling one takes a tenth of a second.
-    `control` holds the coefficients of a polynomial in y / `reach`, the integrand of the control
-    variate, which is used if `controlled`.
+    displacement is part of the state, `limit` whether n = inf, `dry` whether the penalty is the
+    dry friction of the paper, `linear` whether the noise's equation is linear, `pushed` whether
+    U' acts, and `shaken` whether a noise step changes g. `knot`, `inner` and `outer` define the
+    penalty force; `omega` is the root of `outer`, and `rate` the damping in the flow of the
+    velocity (0 for white noise, whose step has it). `transition` (2 x 2, row by row, less the
+    identity) and `factor` (lower triangle) are the exact Gaussian step of the linear noise's
+    (zeta, eta), or of one variable alone in the first entries. `slope`, `first_drift`,
+    `second_drift` and `formula` are addresses of U', of the noise's drifts and of g; 0 where
+    they are not used, as compiling one takes a tenth of a second. `control` holds the
+    coefficients of a polynomial in y / `reach`, the integrand of the control variate, which is
+    used if `controlled`.
     """
 
     step: float
@@ -90,6 +91,7 @@ class Strang(NamedTuple):
     dry: bool
     linear: bool
     pushed: bool
+    shaken: bool
     knot: float
     inner: float
     outer: float
@@ -150,6 +152,7 @@ def coefficients(scene: Scene, step: float, precision: str = "float32") -> Stran
         dry=scene.mechanics.is_dry_friction,
         linear=linear,
         pushed=pushed,
+        shaken=not scene.observable_expression.free_symbols.isdisjoint(equations),
         knot=number(knot),
         inner=number(inner),
         outer=number(outer),
@@ -300,8 +303,10 @@ def kick(s, data, normal, lanes):
     if s.noise == _WHITE and s.observable == _VELOCITY:
         _shake_and_observe_velocity(s, data, normal, lanes)
         return
+    weight = s.step / like(s.step, 2.0) if s.shaken else s.step
     for part in range(2):
-        _gain(s, data, lanes)
+        if part == 0 or s.shaken:
+            _gain(s, data, weight, lanes)
         if part == 0:
             _shake(s, data, normal, lanes)
     observe(data, lanes)
@@ -370,16 +375,15 @@ def _drift_flow(s, data, t, lanes):
 
 
 @inlined
-def _gain(s, data, lanes):
-    """Add half a step's worth of g to the step's gain."""
-    half = s.step / like(s.step, 2.0)
+def _gain(s, data, weight, lanes):
+    """Add g, times a weight, to the step's gain."""
     if s.observable == _VELOCITY:
         for i in range(lanes):
-            data[GAIN, i] = fma(half, data[Y, i], data[GAIN, i])
+            data[GAIN, i] = fma(weight, data[Y, i], data[GAIN, i])
     elif s.observable == _FORMULA:
         evaluate(s.formula, data[WORK].ctypes, data[ZETA:].ctypes, WIDTH, lanes)
         for i in range(lanes):
-            data[GAIN, i] = fma(half, data[WORK, i], data[GAIN, i])
+            data[GAIN, i] = fma(weight, data[WORK, i], data[GAIN, i])
 
 
 @inlined
@@ -415,6 +419,8 @@ def _displace(s, data, t, lanes):
             y, x = data[Y, i], data[X, i]
             if s.limit:
                 after = exact_flows.confined(x, t, y)
+            elif s.inner == like(t, 0.0):
+                after = exact_flows.yielding(x, t, y, s.knot, s.outer)
             else:
                 after = exact_flows.penalised(x, t, y, like(t, 0.0), s.knot, s.inner, s.outer)
             data[X, i] = after

@@ -126,27 +126,26 @@ def refined(
     dict
         For each array the pair of its values on the last grid and of their differences to those on
         the one before. Two grids may agree where the error changes its sign, so a difference counts
-        as at least a part of the one before. Grids that resolve layers converge slowly where the
-        velocity is 0 at the kink; their differences count twice.
+        as at least a part of the one before. Where differences fall slowly, the error is what is
+        left of a geometric series of them. Grids that resolve layers converge slowly where the
+        velocity is 0 at the kink; their differences count twice. Those of three and four variables
+        count three times where a stiff force holds one of them, whose layer is thinner than any
+        element, and if there is no other difference to compare with.
 
     Raises
     ------
     ToleranceError
         If `tol` is not met; what the last grid gives is its `result`.
     """
-    safety = tuning.INVARIANT_DENSITY.layered_safety if _has_layers(scene, grid) else 1.0
+    chosen, many = tuning.INVARIANT_DENSITY, scene.dimension > 2
+    missed = many and not scene.mechanics.in_potential
+    layered = chosen.layered_safety if _has_layers(scene, grid) else 1.0
+    safety = chosen.unresolved_safety if missed else layered
+    first = chosen.unresolved_safety if many else safety
 
     def difference(found):
-        change = {key: np.zeros_like(values) for key, values in found[0].items()}
-        for coarse, fine in pairwise(found):
-            change = {
-                key: np.maximum(
-                    np.abs(fine[key] - coarse[key]),
-                    change[key] / tuning.INVARIANT_DENSITY.gain,
-                )
-                for key in fine
-            }
-        return {key: safety * largest for key, largest in change.items()}
+        factor = safety if len(found) > 2 else first
+        return {key: _left([level[key] for level in found], factor) for key in found[0]}
 
     def relative(values, difference):
         least = np.finfo(float).tiny
@@ -172,6 +171,19 @@ def refined(
             found,
         )
     return found
+
+
+def _left(levels: list[np.ndarray], least: float) -> np.ndarray:
+    """Estimate what the values on the last level are wrong by: at least `least` differences."""
+    chosen = tuning.INVARIANT_DENSITY
+    steps = [np.abs(fine - coarse) for coarse, fine in pairwise(levels)]
+    change = steps[0]
+    for step in steps[1:]:
+        change = np.maximum(step, change / chosen.gain)
+    sizes = [float(np.max(step)) for step in steps[-2:]]
+    ratio = sizes[-1] / sizes[0] if len(sizes) == 2 and sizes[0] > 0 else 0.0
+    slow = ratio / (1 - ratio) if ratio < 1 else math.inf
+    return np.clip(slow, least, chosen.slowest) * change
 
 
 def _affordable(scene: Scene, grid: Grid, quick: bool) -> Iterator[Grid]:

@@ -97,6 +97,17 @@ def test_projection_is_the_limit_of_the_elasto_plastic_flow():
         assert abs(exact_flows.confined(z, t, drive) - penalised) <= abs(drive) / n * (1 + 1e-9)
 
 
+def test_yielding_is_the_penalised_flow_without_force_between_the_knots():
+    """Two implementations of one flow, over all pieces, from rest and from beyond a knot."""
+    for _ in range(300):
+        z, t, n = RNG.normal(scale=1.5), 10 ** RNG.uniform(-3, 1), 10 ** RNG.uniform(0, 6)
+        drive = RNG.choice([0.0, RNG.normal(scale=3)], p=[0.1, 0.9])
+        general = exact_flows.penalised(z, t, drive, 0.0, 1.0, 0.0, n)
+        # in `penalised` a rate of 1e-15 stands for 0, and one unit of rounding for 1
+        rounding = 1e-13 * (1 + abs(z) + abs(drive) * t)
+        assert exact_flows.yielding(z, t, drive, 1.0, n) == pytest.approx(general, abs=rounding)
+
+
 FLOWS = {
     "penalised, friction": lambda z, t, d: exact_flows.penalised(
         z, t, d, type(z)(0.7), type(z)(0.01), type(z)(100), type(z)(0)
@@ -104,6 +115,7 @@ FLOWS = {
     "penalised, plastic": lambda z, t, d: exact_flows.penalised(
         z, t, d, type(z)(0), type(z)(1), type(z)(0), type(z)(1e6)
     ),
+    "yielding": lambda z, t, d: exact_flows.yielding(z, t, d, type(z)(1), type(z)(1e6)),
     "at rest": lambda z, t, d: exact_flows.at_rest(z, t, type(z)(0.01), type(z)(100)),
     "dry friction": lambda z, t, d: exact_flows.dry_friction(z, t, d, type(z)(0.7)),
     "relax": lambda z, t, d: exact_flows.relax(z, t, d, type(z)(0.7)),

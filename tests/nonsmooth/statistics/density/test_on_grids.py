@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.statistics.density.on_grids import densities_on, first_grid
+from nonsmooth.errors import ToleranceError
+from nonsmooth.statistics.density.on_grids import densities_on, first_grid, refined
 
 STICKING = ns.Scene("friction", "langevin", n=2)
 YIELDING = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
@@ -18,6 +19,22 @@ def test_mass_stays_in_the_box():
     exact = np.exp(-(points["eta"] ** 2)) / np.sqrt(np.pi)
     assert np.max(np.abs(found["eta",] - exact)) < 1e-8
     assert np.min(found["eta", "y"]) > -1e-4 * np.max(found["eta", "y"])
+
+
+@pytest.mark.parametrize("ratio", [0.3, 0.6, 0.9])
+def test_slow_convergence_is_seen(ratio):
+    """Errors that fall by a constant factor are stated in full, also where that is near 1."""
+    scene = ns.Scene("obstacle", n=2, potential="x**2/2")
+    levels = iter(range(20))
+
+    def solve(grid):
+        return {("y",): np.array([1.0 + ratio ** next(levels)])}
+
+    with pytest.raises(ToleranceError) as refused:
+        refined(scene, first_grid(scene, 1e-9), 1e-9, solve)
+    value, error = refused.value.result["y",]
+    assert abs(value - 1) <= error * (1 + 1e-9)
+    assert next(levels) > 3
 
 
 @pytest.mark.slow
