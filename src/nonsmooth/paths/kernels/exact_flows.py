@@ -93,8 +93,8 @@ def yielding(z, t, drive, knot, outer):
     """
     zero, inverse = like(z, 0.0), like(z, 1.0) / outer
     side = math.copysign(like(z, 1.0), drive)
-    z, speed = side * z, maximum(abs(drive), like(z, 1e-30))  # now it moves to the right
-    per_speed = like(z, 1.0) / speed
+    z, speed = side * z, abs(drive)  # now it moves to the right
+    per_speed = like(z, 1.0) / maximum(speed, like(z, 1e-30))
     entry, farther = maximum(z, -knot), maximum(z, knot)
     first = log1p(outer * (entry - z) * per_speed) * inverse
     last = fma(maximum(knot - entry, zero), per_speed, first)

@@ -53,8 +53,8 @@ def solved_densities(
     Returns
     -------
     dict
-        Names of variables -> `Density`. The error is the largest difference between two grids, and
-        what the density may be outside of them. Solutions oscillate about 0 where a density is
+        Names of variables -> `Density`. The error is the largest of those of `refined`, and what
+        the density may be outside of the grids. Solutions oscillate about 0 where a density is
         small; negative values become 0.
 
     Raises

@@ -106,6 +106,7 @@ def test_yielding_is_the_penalised_flow_without_force_between_the_knots():
         # in `penalised` a rate of 1e-15 stands for 0, and one unit of rounding for 1
         rounding = 1e-13 * (1 + abs(z) + abs(drive) * t)
         assert exact_flows.yielding(z, t, drive, 1.0, n) == pytest.approx(general, abs=rounding)
+    assert exact_flows.yielding(0.25, 1.0, 0.0, 1.0, 100.0) == 0.25  # to the last digit
 
 
 FLOWS = {
