@@ -75,7 +75,7 @@ def combined(
     Combined
         The error is what grids beyond those combined may add (`Combination.error`), plus the
         effects of the finite box, of the residuals and of a finite n. It may be above what is
-        allowed.
+        allowed, and is infinite if the limit n = inf was not reached from the large n.
 
     Raises
     ------
