@@ -77,7 +77,7 @@ def solved_densities(
 
     found = answered(
         lambda: refined(
-            scene, grid, tol, lambda grid: densities_on(scene, grid, points, accuracy), quick
+            scene, grid, tol, lambda grid: densities_on(scene, grid, points, accuracy), quick, True
         ),
         present,
     )
@@ -106,6 +106,7 @@ def refined(
     tol: float,
     solve: Callable[[Grid], dict],
     quick: bool = False,
+    at_points: bool = False,
 ) -> dict:
     """Refine a grid until two levels agree.
 
@@ -120,32 +121,35 @@ def refined(
         Takes a grid; returns a dict of arrays.
     quick : bool
         Whether to end with grids that take some seconds.
+    at_points : bool
+        Whether the values are densities at points, which converge more slowly than averages.
 
     Returns
     -------
     dict
         For each array the pair of its values on the last grid and of their differences to those on
         the one before. Two grids may agree where the error changes its sign, so a difference counts
-        as at least a part of the one before. Where differences fall slowly, the error is what is
-        left of a geometric series of them. Grids that resolve layers converge slowly where the
-        velocity is 0 at the kink; their differences count twice. Those of three and four variables
-        count three times where a stiff force holds one of them, whose layer is thinner than any
-        element, and if there is no other difference to compare with.
+        as at least a part of the one before. Grids that resolve layers converge slowly where the
+        velocity is 0 at the kink; their differences count twice. At points, where differences fall
+        slowly, the error is what is left of a geometric series of them; those of three and four
+        variables count three times where a stiff force holds one of them, whose layer is thinner
+        than any element, and if there is no other difference to compare with.
 
     Raises
     ------
     ToleranceError
         If `tol` is not met; what the last grid gives is its `result`.
     """
-    chosen, many = tuning.INVARIANT_DENSITY, scene.dimension > 2
+    chosen, many = tuning.INVARIANT_DENSITY, at_points and scene.dimension > 2
     missed = many and not scene.mechanics.in_potential
     layered = chosen.layered_safety if _has_layers(scene, grid) else 1.0
     safety = chosen.unresolved_safety if missed else layered
     first = chosen.unresolved_safety if many else safety
 
     def difference(found):
-        factor = safety if len(found) > 2 else first
-        return {key: _left([level[key] for level in found], factor) for key in found[0]}
+        least = safety if len(found) > 2 else first
+        most = chosen.slowest if at_points else least
+        return {key: _left([level[key] for level in found], least, most) for key in found[0]}
 
     def relative(values, difference):
         least = np.finfo(float).tiny
@@ -173,17 +177,16 @@ def refined(
     return found
 
 
-def _left(levels: list[np.ndarray], least: float) -> np.ndarray:
-    """Estimate what the values on the last level are wrong by: at least `least` differences."""
-    chosen = tuning.INVARIANT_DENSITY
+def _left(levels: list[np.ndarray], least: float, most: float) -> np.ndarray:
+    """Estimate what the last values are wrong by: from `least` to `most` times the difference."""
     steps = [np.abs(fine - coarse) for coarse, fine in pairwise(levels)]
     change = steps[0]
     for step in steps[1:]:
-        change = np.maximum(step, change / chosen.gain)
+        change = np.maximum(step, change / tuning.INVARIANT_DENSITY.gain)
     sizes = [float(np.max(step)) for step in steps[-2:]]
     ratio = sizes[-1] / sizes[0] if len(sizes) == 2 and sizes[0] > 0 else 0.0
     slow = ratio / (1 - ratio) if ratio < 1 else math.inf
-    return np.clip(slow, least, chosen.slowest) * change
+    return np.clip(slow, least, most) * change
 
 
 def _affordable(scene: Scene, grid: Grid, quick: bool) -> Iterator[Grid]:
