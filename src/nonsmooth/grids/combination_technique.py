@@ -149,7 +149,9 @@ class Combination:
     def _expected(self, index):
         """Estimate a surplus by those of its parents, on the safe side: as if they hardly decayed.
 
-        A parent's surplus may be small by chance, so that the one before it counts as well.
+        A parent's surplus may be small by chance, so that the one before it counts as well. Where
+        one variable is raised alone, and surpluses shrink more slowly than to a half, those of all
+        finer grids are added.
         """
         raised = [k for k in self._axes if index[k] > self._lowest[k]]
         bounds = []
@@ -157,10 +159,14 @@ class Combination:
             parent = self._parent(index, k)
             if parent == self._lowest:
                 return math.inf
-            bounds.append(abs(self._surplus[parent]))
+            surplus = self._surplus[parent]
             before = self._parent(parent, k)
-            if before is not None and before != self._lowest:
-                bounds.append(tuning.COMBINATION_TECHNIQUE.relapse * abs(self._surplus[before]))
+            if before is None or before == self._lowest:
+                bounds.append(abs(surplus))
+                continue
+            earlier = self._surplus[before]
+            bounds.append(tuning.COMBINATION_TECHNIQUE.relapse * abs(earlier))
+            bounds.append(abs(surplus) if len(raised) > 1 else _rest(earlier, surplus))
         return np.max(bounds, axis=0) * (1.0 if len(raised) == 1 else self._mixed)
 
     @property
@@ -189,6 +195,18 @@ class Combination:
     def dearest(self) -> Index:
         """Return the index in the set with the most expensive grid."""
         return max(self._values, key=self._cost)
+
+
+def _rest(earlier, last):
+    """Return the sum of a geometric series after two of its terms, or the last if that is more.
+
+    Terms that hardly shrink tell nothing of their sum, which is taken to be `slowest` times as
+    large as the last.
+    """
+    slowest = tuning.COMBINATION_TECHNIQUE.slowest
+    shrinking = np.abs(earlier) > np.abs(last) * (1 + 1 / slowest)
+    ratio = np.where(shrinking, last, 0.0) / np.where(shrinking, earlier, 1.0)
+    return np.abs(last) * np.where(shrinking, np.maximum(ratio / (1 - ratio), 1.0), slowest)
 
 
 def _moved(index, k, by):

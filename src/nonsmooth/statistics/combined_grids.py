@@ -85,10 +85,19 @@ def combined(
     if not math.isinf(scene.n):
         return _combined(scene, tol, functional, allowed, floor, first)
     chosen = tuning.GAMMA2_ON_GRIDS
+    stiff = chosen.stiff_elastic if scene.mechanics.in_potential else chosen.stiff
+    arguments = tol, functional, allowed, floor, first
+    try:
+        return _extrapolated(scene, stiff, *arguments)
+    except ToleranceError:  # the iteration may converge for a smaller n
+        return _extrapolated(scene, chosen.softer * stiff, *arguments)
+
+
+def _extrapolated(scene, stiff, tol, functional, allowed, floor, first):
+    """Extrapolate the functional to n = inf from a large n and one that is smaller."""
     # the rates of convergence are n^(-1/2) where a wall is hit elastically, else 1/n
     elastic = scene.mechanics.in_potential
-    stiff = chosen.stiff_elastic if elastic else chosen.stiff
-    softer = scene.with_n(chosen.softer * stiff)
+    softer = scene.with_n(tuning.GAMMA2_ON_GRIDS.softer * stiff)
     found = _combined(scene.with_n(stiff), tol / 2, functional, allowed, floor, first)
     fitted_below = replace(found.grid, ends=narrowed(softer, found.grid.ends, found.grid.ends))
     try:

@@ -122,7 +122,12 @@ class SpectralGap:
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
     fewer: int = 4  # chosen: the same with three and four variables, where each takes longer
-    loosest: float = 2e-5  # chosen: residual of iterative solvers, at most
+    # chosen: factor on errors of three and four variables that finer grids do not reduce; of random
+    # scenes with layers, they were up to 1.4 times too small
+    unresolved_safety: float = 3.0
+    known: float = 3e-2  # chosen: residual of modes other than the slowest, which are to be seen
+    room: int = 80  # chosen: vectors that the iteration for three and four variables keeps
+    most: int = 600  # chosen: vectors after which it gives up
     # chosen: levels of the first grids of those that are combined
     first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 1, 4: 0})
     fitted: int = 1  # chosen: level on which the box is fitted

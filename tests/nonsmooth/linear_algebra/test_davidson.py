@@ -1,0 +1,72 @@
+"""Slow rates of operators whose eigenvalues are known."""
+
+import numpy as np
+import pytest
+
+from nonsmooth.linear_algebra.davidson import slow_rates
+
+RATES = np.concatenate([[0.5, 0.8], np.linspace(2.0, 1000.0, 400)])
+
+
+def operator(seed, coupling=0.3):
+    """Make a matrix with the eigenvalues 0.4 +- 2i and RATES, not normal, and its inverse."""
+    rng = np.random.default_rng(seed)
+    size = len(RATES) + 2
+    triangle = np.diag(np.concatenate([[0.4, 0.4], RATES]))
+    triangle[0, 1], triangle[1, 0] = 2.0, -2.0
+    above = np.triu(rng.normal(size=(size, size)), 2) * coupling
+    basis = np.linalg.qr(rng.normal(size=(size, size)))[0]
+    matrix = basis @ (triangle + above) @ basis.T
+    return matrix, np.linalg.inv(matrix)
+
+
+def found(matrix, rough, accuracy, room=80, most=600):
+    """Compute the slow rates of a matrix with a rough inverse."""
+    return slow_rates(
+        lambda vector: matrix @ vector,
+        lambda vector: rough @ vector,
+        np.cos(np.arange(len(matrix))),
+        4,
+        accuracy,
+        known=3e-2,
+        room=room,
+        most=most,
+    )
+
+
+@pytest.mark.parametrize("room", [20, 80])
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-9])
+def test_slowest_rate(accuracy, room):
+    """The slowest rate is right to the residual times its condition, with restarts or without."""
+    matrix, inverse = operator(1)
+    rng = np.random.default_rng(2)
+    # wrong by a fifth, so that an inverse iteration alone would stop before the first digit
+    rough = inverse + inverse @ rng.normal(size=inverse.shape) * 0.1 / np.sqrt(len(inverse))
+    rates = found(matrix, rough, accuracy, room)
+    values, left, right = _modes(matrix)
+    slowest = np.argmin(values.real)
+    condition = 1 / abs(left[:, slowest].conj() @ right[:, slowest])
+    assert abs(rates[0].real - 0.4) <= accuracy * abs(values[slowest]) * condition
+    assert np.all(np.diff(rates.real) >= 0)
+
+
+def _modes(matrix):
+    """Return the eigenvalues, and left and right eigenvectors of length 1."""
+    values, right = np.linalg.eig(matrix)
+    left = np.linalg.inv(right).conj().T
+    return values, left / np.linalg.norm(left, axis=0), right
+
+
+def test_complex_pairs_stay_together():
+    """Whether the pair is the last of those wanted or not, both of it are returned."""
+    matrix, inverse = operator(3)
+    rates = found(matrix, inverse, 1e-10)
+    assert rates.imag.sum() == pytest.approx(0, abs=1e-10)
+    assert np.sort(rates.real)[:4] == pytest.approx([0.4, 0.4, 0.5, 0.8], rel=3e-2)
+
+
+def test_a_useless_preconditioner_is_noticed():
+    """The method ends after the number of vectors that it may try."""
+    matrix, inverse = operator(4)
+    with pytest.raises(np.linalg.LinAlgError, match="among 40 vectors"):
+        found(matrix, np.eye(len(inverse)), 1e-9, most=40)
