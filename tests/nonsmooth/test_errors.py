@@ -1,5 +1,8 @@
 """Refusals keep what they have; without a tolerance it is returned with a warning."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
@@ -11,6 +14,7 @@ from nonsmooth.errors import (
     first_answer,
     of_another_quantity,
 )
+from nonsmooth.statistics import tuning
 from references import FRICTION
 
 
@@ -161,12 +165,21 @@ def test_refused_datasets_are_right(name):
 
 
 @pytest.mark.slow
-def test_densities_that_miss_the_tolerance_are_kept():
-    """On one grid more they change by less than stated."""
-    with pytest.raises(ToleranceError, match="values up to") as refused:
-        ns.invariant_density(ns.Scene("elasto_plastic", potential="x**2/2", n=100), tol=1e-12)
-    found = refused.value.result
-    assert {"density_y", "density_x_error", "density_y_x"} <= set(found.variables)
+def test_densities_that_miss_the_tolerance_are_kept(monkeypatch):
+    """Finer grids change them by less than stated."""
+    points = {"y": np.linspace(-2, 2, 41), "x": np.linspace(-1, 1, 41)}
+    scene, found = ns.Scene("elasto_plastic", potential="x**2/2", n=100), []
+    for largest in (100_000, 300_000):
+        chosen = replace(tuning.INVARIANT_DENSITY, largest_layered=largest)
+        monkeypatch.setattr(tuning, "INVARIANT_DENSITY", chosen)
+        with pytest.raises(ToleranceError, match="values up to") as refused:
+            ns.invariant_density(scene, tol=1e-12, points=points)
+        found.append(refused.value.result)
+    coarse, fine = found
+    for name in ("density_y", "density_x", "density_y_x"):
+        assert float(fine[f"{name}_error"]) < float(coarse[f"{name}_error"])
+        change = abs(fine[name] - coarse[name])
+        assert bool((change <= coarse[f"{name}_error"] + fine[f"{name}_error"]).all())
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """Densities by Monte Carlo: averages over cells, of every scene and at n = inf."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy import integrate, stats
 
 import nonsmooth as ns
 from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
+from nonsmooth.statistics import tuning
 from nonsmooth.statistics.density.bins import bin_averages
 
 VELOCITIES, DISPLACEMENTS = np.linspace(-2, 2, 21), np.linspace(-0.9, 0.9, 10)
@@ -106,7 +108,14 @@ def test_walls_belong_to_the_last_cell():
     assert abs(total - 1) <= 10 * 0.2 * float(found.density_x_error)
 
 
-@pytest.mark.slow
+@pytest.fixture
+def patience(monkeypatch):
+    """Shorten the last attempt to some seconds."""
+    chosen = replace(tuning.SAMPLED_DENSITY, longest_time=200.0)
+    monkeypatch.setattr(tuning, "SAMPLED_DENSITY", chosen)
+
+
+@pytest.mark.usefixtures("patience")
 def test_cells_that_no_path_visits_are_not_known():
     """Their density is 0 within an error that is not 0."""
     points = {"eta": np.linspace(-2, 2, 5), "y": np.array([50.0, 51.0])}
@@ -132,7 +141,7 @@ def test_what_cannot_be_sampled_is_refused():
         ns.invariant_density(STICKING, method="deterministic")
 
 
-@pytest.mark.slow
+@pytest.mark.usefixtures("patience")
 def test_a_tolerance_out_of_reach_leaves_what_was_found():
     """The message has the error, and the result is what was asked for."""
     points = {"eta": np.linspace(-2, 2, 81), "y": np.linspace(-1, 1, 81)}
