@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from nonsmooth.errors import SceneError
 from nonsmooth.paths.control_variate import poisson_slope
 from nonsmooth.paths.cost import require_memory
+from nonsmooth.paths.kernels.histogram import count_pairs, place
 from nonsmooth.paths.kernels.panel import STATE, TOTAL_DELTA, extremes, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.parallel import kept_at_once, parallel
@@ -189,15 +190,16 @@ def occupation(
         panel = new_panel(scenes[block % len(scenes)], sampling.seed, block, sampling.precision)
         # counts beyond the cells are in the first and last entries, which are cut off
         counts = {key: np.zeros([2, *(len(ends[name]) + 1 for name in key)], int) for key in keys}
-        for place, (steps, h) in enumerate(grid):
-            half = 2 * place // len(grid)
+        cells = {name: np.zeros(count, int) for name in rows}
+        nowhere = np.zeros(count, int)  # the column of a single variable
+        for number, (steps, h) in enumerate(grid):
+            half = 2 * number // len(grid)
             march(coefficients[h], panel, count, steps, *EVERYWHERE)
-            cells = {
-                name: np.searchsorted(ends[name], panel.data[row, :count], side="right")
-                for name, row in rows.items()
-            }
+            for name, row in rows.items():
+                place(panel.data[row, :count], ends[name], cells[name])
             for key, found in counts.items():
-                np.add.at(found[half], tuple(cells[name] for name in key), 1)
+                own = found[half].reshape(found.shape[1], -1)
+                count_pairs(own, cells[key[0]], cells[key[1]] if len(key) > 1 else nowhere)
         require_finite(panel.data[list(rows.values()), :count])
         return {key: found[:, *(slice(1, -1),) * len(key)] for key, found in counts.items()}
 

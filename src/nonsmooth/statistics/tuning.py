@@ -100,8 +100,8 @@ class SampledDensity:
     least_tolerance: float = 1e-3  # chosen: the least that is tried
     soft: float = 1e2  # chosen: n in the place of inf for the box that holds the points
     blocks: int = 32  # chosen: of 1000 paths; so many are enough to tell their spread
-    longest_time: float = 3200.0  # chosen: of the last attempt, half a minute
-    most_steps: float = 1.6e5  # chosen: the same in steps, where they must be short
+    longest_time: float = 1600.0  # chosen: of the last attempt, half a minute
+    most_steps: float = 8e4  # chosen: the same in steps, where they must be short
     stable: float = 0.9  # chosen: part of the longest stable step for the coarser of the two
     relaxed: float = 2.5  # chosen: so many first times of gamma^2 until a start is forgotten
     attempts: int = 4  # chosen: with steps that become shorter where their bias is large
@@ -109,7 +109,9 @@ class SampledDensity:
     coarser: int = 4  # chosen: factor on the step by which its bias is seen
     dropped: float = 0.2  # chosen: share of the time until paths have forgotten their start
     symmetric: float = 1e-9  # chosen: deviation of symmetric edges from symmetry, in cells
-    spacing: float = 1.0  # chosen: time between two observations, about that of correlations
+    # chosen: time between two observations, about; a path leaves a cell long before it has
+    # forgotten its start, and more observations take as long as the steps between them
+    spacing: float = 0.15
     false_alarm: float = 1e-3  # chosen: probability that chance exceeds the error in some cell
 
 

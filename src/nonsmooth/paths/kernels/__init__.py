@@ -9,5 +9,6 @@ several paths at once.
 - `exact_flows`: exact flows of the piecewise linear parts of the equations of motion
 - `vector_math`: elementary functions that a loop over paths can vectorise
 - `compiled_formulas`: potentials and observables given as formulas
+- `histogram`: cells of values, and counts in them
 - `compilation.kernel`, `compilation.inlined`: how all of these are compiled and cached
 """

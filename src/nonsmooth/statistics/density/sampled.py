@@ -113,9 +113,12 @@ def _histograms(scene, time, points, sampling):
     chosen = tuning.SAMPLED_DENSITY
     edges = {name: _edges(z) for name, z in points.items()}
     coarser = replace(sampling.labelled("bias"), step=chosen.coarser * sampling.step)
+    # whole steps of either length, so that one is `coarser` times the other
+    spacing = coarser.step * max(round(chosen.spacing / coarser.step), 1)
+    dropped = math.ceil(chosen.dropped * time / spacing)
     # an even number, so that both halves of the time have as many
-    count = 2 * math.floor((1 - chosen.dropped) * time / chosen.spacing / 2)
-    times = chosen.dropped * time + chosen.spacing * np.arange(1, count + 1)
+    count = max(2 * math.floor((time / spacing - dropped) / 2), 2)
+    times = spacing * (dropped + np.arange(1, count + 1))
     observed = BLOCK * len(times)  # in each block
     fine, coarse = (_shares(scene, times, edges, own) for own in (sampling, coarser))
     found, bias = {}, 0.0
