@@ -201,7 +201,7 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
         With two to four state variables and a finite n.
     grid : Grid
     accuracy : float
-        Relative, of the iteration for eigenvalues, and of an iterative solver.
+        Relative, of the iteration for eigenvalues.
 
     Returns
     -------
@@ -240,7 +240,7 @@ def _by_arnoldi(solver, parity, accuracy):
         spla.LinearOperator((size, size), inverse, dtype=float),
         k=tuning.SPECTRAL_GAP.wanted,
         v0=_start(solver),
-        tol=accuracy,
+        tol=min(accuracy, tuning.SPECTRAL_GAP.loosest),
         return_eigenvectors=False,
     )
     return 1 / largest[np.abs(largest) > 1e-12]

@@ -127,6 +127,7 @@ class SpectralGap:
     # chosen: factor on errors of three and four variables that finer grids do not reduce; of random
     # scenes with layers, they were up to 1.4 times too small
     unresolved_safety: float = 3.0
+    loosest: float = 2e-5  # chosen: residual of modes on grids that are solved directly, at most
     known: float = 3e-2  # chosen: residual of modes other than the slowest, which are to be seen
     room: int = 80  # chosen: vectors that the iteration for three and four variables keeps
     most: int = 600  # chosen: vectors after which it gives up

@@ -2,6 +2,8 @@
 
 import math
 
+import pytest
+
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
 from nonsmooth.statistics import tuning
@@ -19,3 +21,19 @@ def test_the_value_for_a_large_n_outlives_the_extrapolation():
     scene = ns.Scene("elasto_plastic", "langevin", n=math.inf)
     found = combined(scene, 1e-2, functional, lambda value, tol: tol * value)
     assert (found.value, found.error) == (2.0, math.inf)
+
+
+def test_a_smaller_n_stands_for_the_limit_where_the_iteration_fails():
+    """The rest of order 1/n is extrapolated from there."""
+    largest = tuning.GAMMA2_ON_GRIDS.softer * tuning.GAMMA2_ON_GRIDS.stiff
+
+    def functional(scene, grid, accuracy):
+        if scene.n > largest:
+            raise ToleranceError("the iteration does not converge")
+        return 2.0 + 100 / scene.n
+
+    scene = ns.Scene("elasto_plastic", "langevin", n=math.inf)
+    found = combined(scene, 1e-2, functional, lambda value, tol: tol * value)
+    assert found.scene.n == largest
+    assert found.value == pytest.approx(2.0, abs=1e-12)
+    assert 100 / largest <= found.error < 1e-2 * found.value
