@@ -62,7 +62,7 @@ def slow_rates(
     while tried < most:
         inverses, modes = space.modes(wanted)
         order = np.argsort((1 / inverses).real, kind="stable")
-        residual = _largest(space, inverses[order], modes[:, order], accuracy, known)
+        residual = _too_large(space, inverses[order], modes[:, order], accuracy, known)
         if residual is None:
             return 1 / inverses[order]
         parts = [residual.real, residual.imag] if residual.imag.any() else [residual.real]
@@ -75,8 +75,8 @@ def slow_rates(
     raise np.linalg.LinAlgError(f"the slow modes were not found among {most} vectors")
 
 
-def _largest(space, inverses, modes, accuracy, known):
-    """Return the first residual that is too large, or None; of a complex pair one is enough."""
+def _too_large(space, inverses, modes, accuracy, known):
+    """Return the first residual that is too large, or None; one of a complex pair is enough."""
     for k, (inverse, mode) in enumerate(zip(inverses, modes.T, strict=True)):
         if k and np.isclose(inverse, inverses[k - 1].conj(), rtol=1e-10, atol=0.0):
             continue
