@@ -115,6 +115,7 @@ def patience(monkeypatch):
     monkeypatch.setattr(tuning, "SAMPLED_DENSITY", chosen)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("patience")
 def test_cells_that_no_path_visits_are_not_known():
     """Their density is 0 within an error that is not 0."""
@@ -141,6 +142,7 @@ def test_what_cannot_be_sampled_is_refused():
         ns.invariant_density(STICKING, method="deterministic")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("patience")
 def test_a_tolerance_out_of_reach_leaves_what_was_found():
     """The message has the error, and the result is what was asked for."""
