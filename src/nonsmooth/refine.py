@@ -7,10 +7,13 @@ from operator import length_hint
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.sparse.linalg import ArpackError
 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.progress import counter, interruptible
+
+MOST = 10.0  # chosen: terms that hardly shrink tell nothing of their sum
 
 
 @dataclass(frozen=True)
@@ -99,3 +102,22 @@ def until_agreement(
             if hopeless(solutions[-1], estimate):
                 break
     return Refined(solutions[-1], estimate, False, tuple(solutions))
+
+
+def further_terms(ratio: ArrayLike) -> np.ndarray:
+    """Sum up all further terms of a geometric series, in units of its last term.
+
+    Differences of levels of resolution are taken for such a series; what follows is the error.
+
+    Parameters
+    ----------
+    ratio : array_like
+        The last term over the one before; negative where the signs change.
+
+    Returns
+    -------
+    numpy.ndarray
+        From 1 to `MOST`, of the shape of `ratio`.
+    """
+    shrinking = np.minimum(ratio, MOST / (1 + MOST))
+    return np.maximum(shrinking / (1 - shrinking), 1.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nonsmooth.errors import ToleranceError
-from nonsmooth.refine import until_agreement
+from nonsmooth.refine import MOST, further_terms, until_agreement
 
 
 def halvings(levels, tol, hopeless=lambda value, error: False):
@@ -48,3 +48,16 @@ def test_singular_equations_are_refused():
     """What libraries raise becomes one line for the user."""
     with pytest.raises(ToleranceError, match="singular in double precision"):
         until_agreement([1], lambda level: np.linalg.inv(np.zeros((2, 2))), None, None)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.75, 0.9])
+def test_what_follows_of_a_geometric_series(ratio):
+    """The sum of all further terms is counted in units of the last one."""
+    further = ratio ** np.arange(1, 500)
+    assert further_terms(ratio) == pytest.approx(further.sum(), rel=1e-12)
+
+
+def test_what_follows_of_other_series():
+    """At least the last term is left, at most ten times it where terms hardly shrink."""
+    assert np.all(further_terms([-2.0, -0.9, 0.0, 0.3]) == 1.0)
+    assert np.allclose(further_terms([0.95, 1.0, 3.0, np.inf]), MOST, rtol=1e-14)

@@ -13,5 +13,7 @@ length kappa. The manual derives them in `docs/methods/boundary_layer.md`.
 - `two_variables.layer_constants`: two variables, odd g; up to the order 3.
 - `half_space.constants`: the Milne problem of two variables and its adjoint on one grid.
 - `sampled.sampled_kappa`, `sampled.sampled_poisson`: any odd g, by Monte Carlo; the order 1.
+- `cycles.followed`: paths that pass thresholds again and again, and their states then.
+- `poisson.mean_at`: the Poisson solution at such states, on grids.
 - `tuning`: resolutions and switching points.
 """

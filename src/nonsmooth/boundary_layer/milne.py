@@ -3,10 +3,11 @@
 from dataclasses import replace
 from functools import lru_cache
 
-from nonsmooth.boundary_layer import asymmetric_line, symmetric_line, two_variables
+from nonsmooth.boundary_layer import asymmetric_line, poisson, symmetric_line, two_variables
 from nonsmooth.boundary_layer.constants import LayerConstants
 from nonsmooth.boundary_layer.sampled import sampled_kappa, sampled_poisson
 from nonsmooth.errors import ToleranceError
+from nonsmooth.estimate import Estimate
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics.asymptotic_variance import limit_variance
@@ -97,11 +98,18 @@ def layer_constants(
         return solved
     kappa = _length(scene, tol, labelled(seed, "length"), threads)
     gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
-    u = sampled_poisson(scene, labelled(seed, "start"), threads)
+    u = _poisson_at_start(scene, abs(kappa.value), labelled(seed, "start"), threads)
     return (
         LayerConstants(gamma2.value / 2, (kappa.value, kappa.value), u.value),
         LayerConstants(gamma2.error / 2, (kappa.error, kappa.error), u.error),
     )
+
+
+def _poisson_at_start(scene, unit, seed, threads):
+    """Compute u at the start; at the origin it is 0, because drift and g are odd."""
+    if not any(scene.start.values()):
+        return Estimate(0.0, 0.0, "symmetry", 0.0)
+    return poisson.at_start(scene, unit) or sampled_poisson(scene, seed, threads)
 
 
 def _length(scene, tol, seed, threads):

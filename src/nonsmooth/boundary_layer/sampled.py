@@ -2,40 +2,34 @@
 
 Let u be the Poisson solution of g, -A u = g. Then int_0^t g + u is a martingale. Let a path first
 pass a far threshold. The mean of u at this moment is the extrapolation length kappa, and it is also
-the mean of all that int g gains from then on. This gain is what is sampled. Paths run through
-cycles: a cycle lasts until int g has moved by b to either side, and for some time after that. At
-equidistant times, called looks, a path is examined for passages.
+the mean of all that int g gains from then on. Where u can be solved for on grids, it is averaged
+over the states in which paths pass; elsewhere the gain is.
 """
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import count
 from typing import NamedTuple
 
 import numpy as np
 
-from nonsmooth.boundary_layer import tuning
+from nonsmooth.boundary_layer import poisson, tuning
+from nonsmooth.boundary_layer.cycles import Cycle, Ends, followed, followed_twice
 from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.estimate import Estimate
-from nonsmooth.paths.ensembles import over_blocks, require_finite
-from nonsmooth.paths.kernels.compilation import kernel
-from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
+from nonsmooth.paths.ensembles import over_blocks
+from nonsmooth.paths.kernels.panel import TOTAL_DELTA
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.moments import bias_over_change
-from nonsmooth.paths.parallel import parallel
 from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.simulation import simulate
-from nonsmooth.paths.time_loop import (
-    EVERYWHERE,
-    compile_march,
-    compile_march_pair,
-    march,
-    march_pair,
-)
 from nonsmooth.scenes.scene import Scene
+
+Poisson = Callable[[poisson.Points], np.ndarray]
 
 
 class _Parts(NamedTuple):
@@ -75,59 +69,62 @@ class _Run(NamedTuple):
         """Steps of all paths together."""
         return self.cycles * self.lag * self.paths / self.step
 
-    def refined(self, parts: _Parts) -> "_Run":
-        """Refine what has the largest part in the error."""
+    def refined(self, parts: _Parts, wanted: float) -> "_Run":
+        """Refine what has the largest part in the error, of which so much is wanted."""
         worst = max(parts)
         if worst == parts.scatter:
-            return self._replace(paths=2 * self.paths)
+            needed = (worst / (tuning.SAMPLED.scatter * wanted)) ** 2
+            return self._replace(paths=int(self.paths * min(max(needed, 2.0), tuning.SAMPLED.more)))
         if worst == parts.step:
             return self._replace(step=self.step / 2)
         if worst == parts.threshold:
-            return self._replace(far=2 * self.far)
+            return self._replace(far=tuning.SAMPLED.farther * self.far)
         return self._replace(lag=2 * self.lag)
 
 
 @dataclass(frozen=True)
-class _Cycle:
-    """How a path is followed.
+class _Found:
+    """kappa as it is sampled, with u on a coarse grid if that is known.
 
     Attributes
     ----------
-    threshold : float
-        b.
-    after : int
-        Looks from the passage until the end of the cycle.
-    stride : int
-        Steps from one look to the next.
+    value, error : float
+    parts : _Parts
+        Of the error.
+    ends : Ends
+        Of the cycles of which `value` is the mean.
     """
 
-    threshold: float
-    after: int
-    stride: int = 1
+    value: float
+    error: float
+    parts: _Parts
+    ends: Ends
 
 
 def sampled_kappa(
     scene: Scene, tol: float | None = None, seed: int | tuple = 0, threads: int | None = None
 ) -> Estimate:
-    """Estimate kappa from what int g gains after a passage.
+    """Estimate kappa from the states in which paths pass, or from what int g gains after that.
 
     Parameters
     ----------
     scene : Scene
         With odd g.
     tol : float, optional
-        Absolute error wanted, "1"; a fifth of kappa unless given.
+        Absolute error wanted, "1"; unless given, a twentieth of kappa, or a fifth if the Poisson
+        equation cannot be solved on grids.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
     Returns
     -------
     Estimate
-        The error is the sum of two standard errors; of the changes of kappa if the threshold is
-        halved, if the time after the passage is halved, and if paths are looked at every other step
-        only; and of the bias of the time step, measured by halving it on the same noise, with two
-        standard errors of that. What has the largest part in it is refined: the threshold, the time
-        after the passage or the number of paths is doubled, or the step is halved.
+        The error is the sum of two standard errors; of what halving the threshold twice says of the
+        rest of its effect; of the changes of kappa if paths are looked at every other step only,
+        and, where the gain is sampled, if the time after the passage is halved; of the bias of the
+        time step, measured by halving it on the same noise, with two standard errors of that; and
+        of that of the Poisson solution. What has the largest part in it is refined: the threshold
+        or the time after the passage is made longer, the step is halved, or there are more paths.
 
     Raises
     ------
@@ -136,31 +133,68 @@ def sampled_kappa(
     ToleranceError
         If `tol` is not met; the best value is its `result`.
     """
-    began = time.perf_counter()
     if not scene.is_odd():
         raise SceneError(
             "the extrapolation length is sampled for odd g, not for g = "
             f"{quoted(scene.observable)} with the state ({', '.join(scene.state)}); choose such a g"
         )
+    u = poisson.on_coarse_grid(scene) if scene.dimension > 1 else None
+    if u is not None:
+        try:
+            return _kappa(scene, u, tol, seed, threads)
+        except ToleranceError as refused:
+            if refused.result is not None:
+                raise
+    return _kappa(scene, None, tol, seed, threads)
+
+
+def _kappa(scene, u, tol, seed, threads):
+    """Sample kappa to a tolerance, with u on a coarse grid if that is known, then on finer ones."""
+    began, settings = time.perf_counter(), tuning.SAMPLED
+    relative = settings.tolerance if u is None else settings.tolerance_on_grids
+
+    def wanted(value):
+        return relative * abs(value) if tol is None else tol
+
+    share = 1.0 if u is None else settings.share
+    found = _refined(scene, u, lambda value: share * wanted(value), seed, threads)
+    value, error = found.value, found.error
+    if u is not None:
+        coarse = u(found.ends.state)
+        unit = float(np.std(coarse))
+        most = (1 - share) * wanted(value) / unit
+        rest, inexact = poisson.mean_at(scene, found.ends.state, most, unit, coarse)
+        if not math.isfinite(inexact):
+            raise ToleranceError("the Poisson solution is not known in the limit")
+        value, error = value + rest, error + inexact
+    estimate = Estimate(value, error, "Monte Carlo", time.perf_counter() - began)
+    if not error <= wanted(value):
+        raise ToleranceError(
+            f"kappa = {value:.3g} has an error of {error:.1e}, above tol; loosen tol", estimate
+        )
+    return estimate
+
+
+def _refined(scene, u, wanted, seed, threads):
+    """Refine a run until its error is as wanted, or there is no hope of that."""
     settings = tuning.SAMPLED
     lag, step = settings.lag * max(1.0, 1 / scene.damping), coarse_step(scene) / 2
     run = _Run(settings.far, lag, settings.paths, step)
-    most = settings.work * run.work
+    most, best = settings.work * run.work, None
     for attempt in count():
         own = labelled(seed, attempt)
-        sampling = Sampling(run.step, run.paths, own, threads=threads, precision="float64")
-        value, error, parts = _estimate(scene, run, sampling)
-        wanted = settings.tolerance * abs(value) if tol is None else tol
-        if error <= wanted:
-            return Estimate(value, error, "Monte Carlo", time.perf_counter() - began)
-        run, left = run.refined(parts), most / run.work
+        sampling = Sampling(run.step, run.paths, own, threads=threads)
+        found = _estimate(scene, u, run, sampling)
+        if best is None or not found.error >= best.error:
+            best = found
+        most_error = wanted(found.value)
+        if found.error <= most_error:
+            return best
+        run, left = run.refined(found.parts, most_error), most / run.work
         # n times the work makes the scatter at best sqrt(n) times smaller
-        if run.work > most or parts.scatter > wanted * math.sqrt(left):
-            break
-    raise ToleranceError(
-        f"kappa = {value:.3g} has an error of {error:.1e}, above tol; loosen tol",
-        Estimate(value, error, "Monte Carlo", time.perf_counter() - began),
-    )
+        if run.work > most or found.parts.scatter > most_error * math.sqrt(left):
+            return best
+    raise AssertionError
 
 
 def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = None) -> Estimate:
@@ -177,12 +211,9 @@ def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = N
     -------
     Estimate
         The error is the sum of two standard errors, of the change in the second half of the time,
-        and of the bias of the time step with two standard errors of that. For a start at the origin
-        the value is exactly 0, because drift and g are odd.
+        and of the bias of the time step with two standard errors of that.
     """
     began = time.perf_counter()
-    if not any(scene.start.values()):
-        return Estimate(0.0, 0.0, "symmetry", 0.0)
     lag = tuning.SAMPLED.lag * max(1.0, 1 / scene.damping)
     times = [lag, 2 * lag]
     run = simulate(scene, times[-1], tuning.SAMPLED.start, times=times, seed=seed, threads=threads)
@@ -197,25 +228,46 @@ def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = N
     return Estimate(float(end), float(error), "Monte Carlo", time.perf_counter() - began)
 
 
-def _estimate(scene, run, sampling):
-    """Return kappa, its error, and the parts of that."""
+def _estimate(scene, u, run, sampling):
+    """Sample kappa once."""
     after = 2 * round(run.lag / sampling.step / 2)
-    far = run.far * _spread(scene, after, sampling.labelled("spread"))
-    cycles = [
-        _Cycle(far, after),
-        _Cycle(far / 2, after),
-        _Cycle(far, after // 2),
-        _Cycle(far, after // 2, stride=2),
-    ]
     steps = run.cycles * after
-    gains = _gains(scene, after, steps, cycles, sampling)
-    (value, spread), *others = (_mean(*of_cycle) for of_cycle in gains)
-    changes = np.abs([other - value for other, _ in others])
+    far = run.far * _spread(scene, after, sampling.labelled("spread"))
+    waited = after if u is None else 0
+    own = Cycle(far, waited)
+    # nearer thresholds are passed more often
+    half, quarter = (Cycle(far / k, waited, until=steps / k**2) for k in (2, 4))
+    others = [half, quarter, Cycle(far, waited // 2, stride=2)]
+    if u is None:
+        others.append(Cycle(far, after // 2))
+    ends, *of_others = followed(scene, after, steps, [own, *others], sampling)
+    sums = _by_path(u, ends)
+    value, spread = _mean(*sums)
+    found = [_change(_by_path(u, one), sums) for one in of_others]
+    (near, noise), (nearer, _), *rest = found
+    further = _further(near, nearer - near)
+    changes = np.abs([(further * near, further * noise), *rest])
     fewer = max(tuning.SAMPLED.pilot_paths, sampling.paths // tuning.SAMPLED.halved)
     halving = replace(sampling.labelled("halving"), paths=fewer)
-    bias, deviation = _step_bias(scene, after, steps, cycles[0], halving)
-    error = 2 * spread + abs(bias) + 2 * deviation + np.linalg.norm(changes)
-    return value, float(error), _Parts(2 * spread + 2 * deviation, abs(bias), *changes[:2])
+    bias, deviation = _step_bias(scene, u, after, steps, own, halving)
+    error = 2 * spread + abs(bias) + 2 * deviation + np.linalg.norm(changes[:, 0])
+    # what may be chance is no reason to refine anything but the paths
+    threshold, looks, *lag = np.maximum(changes[:, 0] - 2 * changes[:, 1], 0.0)
+    parts = _Parts(2 * spread + 2 * deviation, abs(bias) + looks, threshold, *(lag or [0.0]))
+    return _Found(value, float(error), parts, ends)
+
+
+def _further(last, before):
+    """Return what a threshold may be wrong by, over what halving it changes.
+
+    What is left of a path's start falls like exp(-mu b). With q = exp(-mu b/4), halving b and b/2
+    changes q^2 (1 - q^2) and q (1 - q), and q^4 is left. That is q^2 / (1 - q^2) of the first
+    change; q / (1 - q) is returned, and not less than the least.
+    """
+    least, largest = tuning.SAMPLED.least, tuning.SAMPLED.largest
+    ratio = abs(last) / max(abs(before), np.finfo(float).tiny)
+    q = min((math.sqrt(1 + 4 * ratio) - 1) / 2, largest / (1 + largest))
+    return max(q / (1 - q), least)
 
 
 def _spread(scene, after, sampling):
@@ -230,93 +282,32 @@ def _spread(scene, after, sampling):
     return np.std(end - before)
 
 
-def _gains(scene, after, steps, cycles, sampling):
-    """For each path, sum the gains of its cycles and count the cycles: shape (cycles, 2, paths)."""
-    s = registry.coefficients(scene, sampling.scheme, sampling.step, sampling.precision)
-    compile_march(s, new_panel(scene, sampling.seed, 0, sampling.precision))
-
-    def run(job):
-        block, lanes = job
-        panel = new_panel(scene, sampling.seed, block, sampling.precision)
-        integral = panel.total[TOTAL_DELTA, :lanes]
-        march(s, panel, lanes, after, *EVERYWHERE)  # the approach to stationarity
-        states = [_begun(integral) for _ in cycles]
-        for k in range(1, steps + 1):
-            march(s, panel, lanes, 1, *EVERYWHERE)
-            for state, cycle in zip(states, cycles, strict=True):
-                if k % cycle.stride == 0:
-                    _look(state, integral, cycle.threshold, cycle.after)
-        require_finite(integral)
-        return np.array(states)[:, -2:]
-
-    return np.concatenate(list(parallel(run, sampling, after + steps)), axis=2)
-
-
-def _step_bias(scene, after, steps, cycle, sampling):
-    """Measure the bias of the mean gain by halving the time step; return it and its error."""
-    fine, coarse = (
-        registry.coefficients(scene, sampling.scheme, h, sampling.precision)
-        for h in (sampling.step / 2, sampling.step)
+def _step_bias(scene, u, after, steps, cycle, sampling):
+    """Measure the bias of the mean by halving the time step; return it and its error."""
+    half, whole = (
+        _by_path(u, ends) for ends in followed_twice(scene, after, steps, cycle, sampling)
     )
-    given = registry.on_given_increments(coarse)
-    compile_march_pair(fine, given, new_panel(scene, sampling.seed, 0, sampling.precision))
-
-    def run(job):
-        block, lanes = job
-        panels = [new_panel(scene, sampling.seed, block, sampling.precision) for _ in range(2)]
-        integrals = [panel.total[TOTAL_DELTA, :lanes] for panel in panels]
-        passage = np.full((2, lanes), np.inf)
-
-        def advance(by):
-            march_pair(fine, given, *panels, lanes, by, *EVERYWHERE, 0.0, passage)
-
-        advance(after)
-        states = [_begun(integral) for integral in integrals]
-        for _ in range(steps):
-            advance(1)
-            for state, integral in zip(states, integrals, strict=True):
-                _look(state, integral, cycle.threshold, cycle.after)
-        for integral in integrals:
-            require_finite(integral)
-        return np.array(states)[:, -2:]
-
-    runs = parallel(run, sampling, 3 * (after + steps))
-    half, whole = np.concatenate(list(runs), axis=2)
     factor = bias_over_change(registry.scheme(scene, sampling.scheme).weak_order(scene))
-    # The mean is a ratio of sums over independent paths; its error is that of the linearised ratio.
-    parts = _deviations(*whole) - _deviations(*half)
-    change = _mean(*whole)[0] - _mean(*half)[0]
-    return factor * change, factor * float(np.sqrt(np.sum(parts**2)))
+    return tuple(factor * found for found in _change(whole, half))
 
 
-def _begun(integral):
-    """State of the cycles: int g at their start, side and looks since passage, sums and counts."""
-    state = np.zeros((5, len(integral)))
-    state[0] = integral
-    return state
-
-
-@kernel
-def _look(state, integral, threshold, after):
-    """Notice passages and, `after` looks later, add what int g has gained beyond the threshold."""
-    base, side, waited, total, count = state
-    for i in range(len(integral)):
-        moved = integral[i] - base[i]
-        if side[i] != 0:
-            waited[i] += 1
-        elif abs(moved) >= threshold:
-            side[i] = 1.0 if moved > 0 else -1.0
-        if side[i] != 0 and waited[i] >= after:
-            total[i] += side[i] * moved - threshold
-            count[i] += 1
-            base[i], side[i], waited[i] = integral[i], 0.0, 0.0
+def _by_path(u, ends):
+    """For each path, sum up the gain and u at the ends of its cycles, and count these."""
+    values = ends.gain if u is None else ends.gain + u(ends.state)
+    return tuple(np.bincount(ends.path, weights, ends.paths) for weights in (values, None))
 
 
 def _mean(total, count):
-    """Mean of the gains, and its standard error."""
+    """Mean over the ends, and its standard error."""
     return float(total.sum() / count.sum()), float(np.linalg.norm(_deviations(total, count)))
 
 
+def _change(sums, others):
+    """Difference of two means over the ends on the same paths, and its standard error."""
+    parts = _deviations(*sums) - _deviations(*others)
+    return _mean(*sums)[0] - _mean(*others)[0], float(np.linalg.norm(parts))
+
+
 def _deviations(total, count):
-    """Contribution of each path to the error of the mean."""
+    """Contribution of each path to the error of the mean, that of the linearised ratio of sums."""
     return (total - count * total.sum() / count.sum()) / count.sum()

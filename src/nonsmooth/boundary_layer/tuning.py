@@ -40,7 +40,12 @@ class TwoVariables:
 class Sampled:
     """kappa by Monte Carlo."""
 
-    tolerance: float = 0.2  # relative error, unless asked; chosen: seconds, enough for a correction
+    # relative error of the gain, unless asked; chosen: seconds, enough for a correction
+    tolerance: float = 0.2
+    tolerance_on_grids: float = 0.05  # chosen: the same where u is known, for some seconds
+    share: float = 0.7  # chosen: part of the tolerance that is left to the paths where u is known
+    scatter: float = 0.4  # chosen: part of the tolerance that the scatter is to have
+    more: float = 8.0  # chosen: largest factor on the number of paths from one attempt to the next
     paths: int = 2000  # at the first attempt; chosen: two blocks of paths
     # time after a passage at the first attempt, in units of the larger of 1 and 1 / C_b; chosen:
     # if that is the relaxation time, e^-4 = 2 % is left of correlations; scenes that yield need
@@ -50,8 +55,13 @@ class Sampled:
     # threshold over the standard deviation of what int g gains in that time; chosen: the start of a
     # cycle is forgotten at the passage
     far: float = 2.0
-    # largest number of steps of all paths, over that of the first attempt; chosen: half a minute
-    work: float = 32.0
+    # error of a threshold over what halving it changes; chosen: a fifth covers layers that fall
+    # more slowly than those seen, and four is cause enough for a larger threshold
+    least: float = 0.2
+    largest: float = 4.0
+    farther: float = 2.0  # chosen: factor on the threshold from one attempt to the next
+    # largest number of steps of all paths, over that of the first attempt; chosen: a minute
+    work: float = 128.0
     # tolerance of the simulation that gives the mean of int g from the start; chosen: quick
     start: float = 0.05
     # paths that measure the bias of the step: the least number, and one in so many of all paths;
@@ -60,6 +70,16 @@ class Sampled:
     halved: int = 4
 
 
+@dataclass(frozen=True)
+class Poisson:
+    """The Poisson solution at points."""
+
+    coarse: float = 1e-2  # chosen: relative error meant by the coarse grid, which sampling uses
+    points: int = 20_000  # chosen: at which the finer solutions are compared with the coarse one
+    at_start: float = 1e-2  # chosen: error of the value at the start, over kappa
+
+
 LINE = Line()
 TWO_VARIABLES = TwoVariables()
 SAMPLED = Sampled()
+POISSON = Poisson()

@@ -18,6 +18,7 @@ import numpy as np
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids import tuning
 from nonsmooth.progress import counter
+from nonsmooth.refine import further_terms
 
 Index = tuple[int, ...]
 # one number, or several that share a tolerance
@@ -198,15 +199,10 @@ class Combination:
 
 
 def _rest(earlier, last):
-    """Return the sum of a geometric series after two of its terms, or the last if that is more.
-
-    Terms that hardly shrink tell nothing of their sum, which is taken to be `slowest` times as
-    large as the last.
-    """
-    slowest = tuning.COMBINATION_TECHNIQUE.slowest
-    shrinking = np.abs(earlier) > np.abs(last) * (1 + 1 / slowest)
-    ratio = np.where(shrinking, last, 0.0) / np.where(shrinking, earlier, 1.0)
-    return np.abs(last) * np.where(shrinking, np.maximum(ratio / (1 - ratio), 1.0), slowest)
+    """Estimate the sum of all surpluses after two of them."""
+    shrinking = np.abs(earlier) > np.abs(last)
+    ratio = np.where(shrinking, last, 1.0) / np.where(shrinking, earlier, 1.0)
+    return np.abs(last) * further_terms(ratio)
 
 
 def _moved(index, k, by):

@@ -19,6 +19,7 @@ from nonsmooth.scenes.scene import Scene
 
 _SIDE = 1e-6  # distance from an edge at which its sides are seen, over the smallest element
 _JUMP = 1e-3  # relative difference of both sides that is a jump
+_BATCH = 300  # points that are interpolated at together, so that their values fit into the cache
 
 
 def evaluate(
@@ -75,6 +76,51 @@ def start_row(scene: Scene, axes: Mapping[sympy.Symbol, Axis], side: int = 1) ->
     start = [side * scene.start.get(symbol.name, 0.0) for symbol in axes]
     parts = [axis.interpolation(z) for axis, z in zip(axes.values(), start, strict=True)]
     return reduce(np.kron, [part.toarray()[0] for part in parts])
+
+
+def at_points(
+    values: np.ndarray,
+    axes: Mapping[sympy.Symbol, Axis],
+    points: Mapping[sympy.Symbol, np.ndarray],
+) -> np.ndarray:
+    """Interpolate a function on a tensor grid at points anywhere in the state.
+
+    Parameters
+    ----------
+    values : numpy.ndarray, shape (number of grid points,)
+    axes : dict
+        As for `evaluate`.
+    points : dict
+        Maps each symbol to an array of shape (m,).
+
+    Returns
+    -------
+    numpy.ndarray, shape (m,)
+        0 outside the grid.
+    """
+    rows = [_padded(axis.interpolation(points[symbol])) for symbol, axis in axes.items()]
+    found = np.empty(len(rows[0][0]))
+    for begin in range(0, len(found), _BATCH):
+        some = slice(begin, begin + _BATCH)
+        nodes = np.zeros((len(found[some]), 1), dtype=int)
+        for axis, (columns, _) in zip(axes.values(), rows, strict=True):
+            further = nodes[:, :, None] * len(axis.nodes) + columns[some, None, :]
+            nodes = further.reshape(len(nodes), -1)
+        left = values[nodes]
+        for _, weights in rows:  # one variable after the other
+            blocks = left.reshape(len(left), weights.shape[1], -1)
+            left = (weights[some, None, :] @ blocks)[:, 0]
+        found[some] = left[:, 0]
+    return found
+
+
+def _padded(matrix):
+    """Columns and entries of a sparse matrix, with zeros where a row has fewer than others."""
+    counts = np.diff(matrix.indptr)
+    kept = np.arange(np.max(counts, initial=1)) < counts[:, None]
+    columns, entries = np.zeros(kept.shape, dtype=int), np.zeros(kept.shape)
+    columns[kept], entries[kept] = matrix.indices, matrix.data
+    return columns, entries
 
 
 @dataclass(frozen=True)

@@ -133,7 +133,6 @@ class CombinationTechnique:
     # chosen: a surplus is taken to be at least this part of the one two levels below, because the
     # one directly below may be small by chance
     relapse: float = 0.25
-    slowest: float = 10.0  # chosen: surpluses that hardly shrink add up to this times the last
     mixed: float = 0.25  # chosen: factor on surpluses where two or more variables are raised
     # chosen: the same for displacement and velocity, or forcing and velocity, refined separately;
     # the motion mixes them

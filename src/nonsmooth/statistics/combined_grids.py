@@ -84,21 +84,30 @@ def combined(
     """
     if not math.isinf(scene.n):
         return _combined(scene, tol, functional, allowed, floor, first)
-    chosen = tuning.GAMMA2_ON_GRIDS
-    stiff = chosen.stiff_elastic if scene.mechanics.in_potential else chosen.stiff
-    arguments = tol, functional, allowed, floor, first
+    stiff, arguments = with_finite_n(scene), (tol, functional, allowed, floor, first)
     try:
-        return _extrapolated(scene, stiff, *arguments)
+        return _extrapolated(stiff, *arguments)
     except ToleranceError:  # the iteration may converge for a smaller n
-        return _extrapolated(scene, chosen.softer * stiff, *arguments)
+        return _extrapolated(_softer(stiff), *arguments)
 
 
-def _extrapolated(scene, stiff, tol, functional, allowed, floor, first):
+def with_finite_n(scene: Scene) -> Scene:
+    """Return the scene, with a large n in the place of inf."""
+    if not math.isinf(scene.n):
+        return scene
+    chosen = tuning.GAMMA2_ON_GRIDS
+    return scene.with_n(chosen.stiff_elastic if scene.mechanics.in_potential else chosen.stiff)
+
+
+def _softer(scene):
+    return scene.with_n(tuning.GAMMA2_ON_GRIDS.softer * scene.n)
+
+
+def _extrapolated(stiff, tol, functional, allowed, floor, first):
     """Extrapolate the functional to n = inf from a large n and one that is smaller."""
     # the rates of convergence are n^(-1/2) where a wall is hit elastically, else 1/n
-    elastic = scene.mechanics.in_potential
-    softer = scene.with_n(tuning.GAMMA2_ON_GRIDS.softer * stiff)
-    found = _combined(scene.with_n(stiff), tol / 2, functional, allowed, floor, first)
+    elastic, softer = stiff.mechanics.in_potential, _softer(stiff)
+    found = _combined(stiff, tol / 2, functional, allowed, floor, first)
     fitted_below = replace(found.grid, ends=narrowed(softer, found.grid.ends, found.grid.ends))
     try:
         gap = functional(found.scene, found.grid, found.accuracy) - functional(

@@ -77,8 +77,6 @@ class InvariantDensity:
     # chosen: largest factor by which a level reduces the error; if a difference falls by more, the
     # error has changed its sign
     gain: float = 10.0
-    # chosen: largest factor on a difference that is hardly smaller than the one before
-    slowest: float = 10.0
     points: int = 201  # chosen: number of points of a density unless points are given
     deepest: float = 80.0  # derived: exp(-80) is below rounding of the norm of a closed form
     gauss: int = 16  # chosen: Gauss points for each piece of a bin

@@ -6,7 +6,7 @@ import sympy
 import nonsmooth as ns
 from nonsmooth.grids import generator
 from nonsmooth.grids.mesh.axes import axes as axes_of
-from nonsmooth.scenes.symbols import x, y
+from nonsmooth.scenes.symbols import eta, x, y
 
 
 def test_the_generator_is_exact_on_polynomials():
@@ -25,3 +25,17 @@ def test_the_generator_is_exact_on_polynomials():
     edges = np.isin(generator.evaluate(y, axes), axes[y].edges)
     assert np.max(np.abs(found - wanted)[inside & ~edges]) < 1e-10 * scale
     assert np.max(np.abs(matrix @ np.ones(matrix.shape[0]))) < 1e-9
+
+
+def test_interpolation_at_points_is_exact_on_polynomials():
+    """Within elements that differ in degree; 0 outside the grid."""
+    scene = ns.Scene("elasto_plastic", "langevin", n=10, potential="x**2/2")
+    symbols = eta, y, x
+    axes = axes_of(scene, {eta: 3.0, y: 3.0, x: 1.5}, {eta: 1, y: 1, x: 1})
+    f = x**2 + x * y**2 + eta * y - eta
+    draw = np.random.default_rng(1).uniform
+    points = {symbol: draw(-1.4, 1.4, size=1000) for symbol in symbols}
+    points[x][::10] = 1.6
+    found = generator.at_points(generator.evaluate(f, axes), axes, points)
+    exact = sympy.lambdify(symbols, f)(*points.values())
+    assert np.max(np.abs(found - np.where(points[x] < 1.5, exact, 0.0))) < 1e-12

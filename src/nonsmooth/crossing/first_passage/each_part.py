@@ -20,6 +20,7 @@ from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import Part
 from nonsmooth.kinetic.ordinates_plane import UnstableError
 from nonsmooth.progress import counter
+from nonsmooth.refine import further_terms
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,7 @@ def _refined(parts, solution, met, tol):
         least = np.minimum(falls * np.abs(changes), settings.again * further_before)
         floor = np.where(beyond > 0, least, floor)
         sizes = np.maximum(counted * np.abs(further), floor)
-        errors = _tails(rates)[:, None, None] * sizes
+        errors = further_terms(rates)[:, None, None] * sizes
         value = base + extrapolated[finer].sum(axis=0)
         coarser, found = found, Found(value, errors.sum(axis=0))
         over, size, larger = met(found), sizes.sum(axis=0).max(), size
@@ -167,12 +168,6 @@ def _least(changes, rates, falls, left):
     """
     sizes = np.max(np.abs(changes), axis=(1, 2))
     return np.sum(sizes * np.clip(rates, np.ravel(falls), 1.0) ** left)
-
-
-def _tails(rates):
-    """Sum up all further changes over the last ones, if they go on to fall so; at least 1."""
-    rates = np.minimum(rates, tuning.EACH_PART.slowest)
-    return np.maximum(rates / (1 - rates), 1.0)
 
 
 def _to_refine(worst, sizes, falls, tol):

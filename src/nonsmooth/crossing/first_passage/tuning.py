@@ -170,8 +170,6 @@ class EachPart:
     # chosen: there is no hope if the changes that are left at the finest resolution, extrapolated
     # from two of them, are so many times the tolerance
     hopeless: float = 10.0
-    # chosen: largest fall of changes that are missed whose sum is told; slower ones sum up to 9
-    slowest: float = 0.9
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from nonsmooth.grids import tensor_grid
 from nonsmooth.grids import tuning as grid_tuning
 from nonsmooth.grids.mesh.layers import is_held, resolves_layer
 from nonsmooth.grids.tensor_grid import Grid
-from nonsmooth.refine import until_agreement
+from nonsmooth.refine import further_terms, until_agreement
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics import tuning
 from nonsmooth.statistics.density.found import Density, Found, keys
@@ -148,8 +148,7 @@ def refined(
 
     def difference(found):
         least = safety if len(found) > 2 else first
-        most = chosen.slowest if at_points else least
-        return {key: _left([level[key] for level in found], least, most) for key in found[0]}
+        return {key: _left([level[key] for level in found], least, at_points) for key in found[0]}
 
     def relative(values, difference):
         least = np.finfo(float).tiny
@@ -177,16 +176,19 @@ def refined(
     return found
 
 
-def _left(levels: list[np.ndarray], least: float, most: float) -> np.ndarray:
-    """Estimate what the last values are wrong by: from `least` to `most` times the difference."""
+def _left(levels: list[np.ndarray], least: float, slow: bool) -> np.ndarray:
+    """Estimate the error of the last values by their difference to those before.
+
+    It counts `least` times, or as many times as a geometric series says, if they may be `slow`.
+    """
     steps = [np.abs(fine - coarse) for coarse, fine in pairwise(levels)]
     change = steps[0]
     for step in steps[1:]:
         change = np.maximum(step, change / tuning.INVARIANT_DENSITY.gain)
     sizes = [float(np.max(step)) for step in steps[-2:]]
-    ratio = sizes[-1] / sizes[0] if len(sizes) == 2 and sizes[0] > 0 else 0.0
-    slow = ratio / (1 - ratio) if ratio < 1 else math.inf
-    return np.clip(slow, least, most) * change
+    if not slow or len(sizes) < 2 or sizes[0] == 0:
+        return least * change
+    return np.maximum(further_terms(sizes[1] / sizes[0]), least) * change
 
 
 def _affordable(scene: Scene, grid: Grid, quick: bool) -> Iterator[Grid]:
