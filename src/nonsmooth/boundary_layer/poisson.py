@@ -73,7 +73,8 @@ def mean_at(
     spreads = [0.0]
 
     def mean(scene: Scene, grid: Grid, accuracy: float) -> float:
-        rest = at_points(*_solved(scene, grid, accuracy), taken) - known
+        u, axes = _solved(scene, grid, accuracy)
+        rest = at_points(u, axes, taken) - known
         spreads.append(float(np.std(rest)))
         return float(np.mean(rest))
 
