@@ -47,7 +47,7 @@ VALID: dict[str, dict[str, str]] = {
     },
     "invariant_density": {
         "scene": _YIELDING,
-        "tol": "0.1",
+        "tol": "0.3",
         "points": "{'y': [0.0, 1.0], 'x': [-1.0, 0.0, 1.0]}",
     },
     "spectral_gap": {"scene": _FRICTION, "tol": "1e-3"},

@@ -245,7 +245,8 @@ def _estimate(scene, u, run, sampling):
     value, spread = _mean(*sums)
     found = [_change(_by_path(u, one), sums) for one in of_others]
     (near, noise), (nearer, _), *rest = found
-    further = _further(near, nearer - near)
+    # the ratio of two chances tells nothing
+    further = _further(near, nearer - near) if abs(near) > 2 * noise else 1.0
     changes = np.abs([(further * near, further * noise), *rest])
     fewer = max(tuning.SAMPLED.pilot_paths, sampling.paths // tuning.SAMPLED.halved)
     halving = replace(sampling.labelled("halving"), paths=fewer)

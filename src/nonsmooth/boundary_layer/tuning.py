@@ -43,7 +43,7 @@ class Sampled:
     # relative error of the gain, unless asked; chosen: seconds, enough for a correction
     tolerance: float = 0.2
     tolerance_on_grids: float = 0.05  # chosen: the same where u is known, for some seconds
-    share: float = 0.7  # chosen: part of the tolerance that is left to the paths where u is known
+    share: float = 0.8  # chosen: part of the tolerance that is left to the paths where u is known
     scatter: float = 0.4  # chosen: part of the tolerance that the scatter is to have
     more: float = 8.0  # chosen: largest factor on the number of paths from one attempt to the next
     paths: int = 2000  # at the first attempt; chosen: two blocks of paths
@@ -56,9 +56,9 @@ class Sampled:
     # cycle is forgotten at the passage
     far: float = 2.0
     # error of a threshold over what halving it changes; chosen: a fifth covers layers that fall
-    # more slowly than those seen, and four is cause enough for a larger threshold
+    # more slowly than those seen, and two is cause enough for a larger threshold
     least: float = 0.2
-    largest: float = 4.0
+    largest: float = 2.0
     farther: float = 2.0  # chosen: factor on the threshold from one attempt to the next
     # largest number of steps of all paths, over that of the first attempt; chosen: a minute
     work: float = 128.0
