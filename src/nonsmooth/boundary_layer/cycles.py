@@ -100,11 +100,7 @@ def followed(
         panel = new_panel(scene, sampling.seed, block, sampling.precision)
         march(s, panel, lanes, approach, *EVERYWHERE)
         watches = [_Watch(panel, lanes, cycle) for cycle in cycles]
-        for k in range(1, steps + 1):
-            march(s, panel, lanes, 1, *EVERYWHERE)
-            for watch in watches:
-                watch.look(k)
-        return _checked(watches)
+        return _watched(watches, steps, lambda: march(s, panel, lanes, 1, *EVERYWHERE))
 
     return _gathered(scene, parallel(run, sampling, approach + steps))
 
@@ -141,11 +137,7 @@ def followed_twice(
 
         advance(approach)
         watches = [_Watch(panel, lanes, cycle) for panel in panels]
-        for k in range(1, steps + 1):
-            advance(1)
-            for watch in watches:
-                watch.look(k)
-        return _checked(watches)
+        return _watched(watches, steps, lambda: advance(1))
 
     return _gathered(scene, parallel(run, sampling, 3 * (approach + steps)))
 
@@ -199,7 +191,12 @@ def _look(progress, integral, threshold, after, ended):
     return found
 
 
-def _checked(watches):
+def _watched(watches, steps, advance):
+    """Look after every step; return the number of paths and their ends, for each watch."""
+    for k in range(1, steps + 1):
+        advance()
+        for watch in watches:
+            watch.look(k)
     for watch in watches:
         require_finite(watch.integral)
     return [(len(watch.integral), watch.ends) for watch in watches]

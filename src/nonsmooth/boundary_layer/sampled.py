@@ -194,7 +194,6 @@ def _refined(scene, u, wanted, seed, threads):
         # n times the work makes the scatter at best sqrt(n) times smaller
         if run.work > most or found.parts.scatter > most_error * math.sqrt(left):
             return best
-    raise AssertionError
 
 
 def sampled_poisson(scene: Scene, seed: int | tuple = 0, threads: int | None = None) -> Estimate:

@@ -17,7 +17,7 @@ def test_kappa_of_dry_friction():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("n", "on_grids"), [(2, True), (2, False)])
+@pytest.mark.parametrize(("n", "on_grids"), [(2, True), (2, False), (100, True)])
 def test_kappa_of_a_yielding_structure(n, on_grids, monkeypatch):
     """The sampled kappa is the one solved on grids, within the stated errors; the seed is fixed.
 
