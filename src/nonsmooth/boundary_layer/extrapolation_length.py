@@ -28,7 +28,7 @@ def extrapolation_length(
         drift; or any other with odd g, by Monte Carlo.
     tol : float, optional
         Absolute error wanted, "1". Unless given, it is 1e-8 for one variable, 1e-3 for two, and a
-        twentieth of kappa by Monte Carlo; what misses these is returned with a warning.
+        tenth of kappa by Monte Carlo; what misses these is returned with a warning.
     side : {"upper", "lower"}, optional
         Of the threshold. For odd g kappa is the same on both sides.
     seed, threads

@@ -111,7 +111,7 @@ def sampled_kappa(
     scene : Scene
         With odd g.
     tol : float, optional
-        Absolute error wanted, "1"; unless given, a twentieth of kappa, or a fifth if the Poisson
+        Absolute error wanted, "1"; unless given, a tenth of kappa, or a fifth if the Poisson
         equation cannot be solved on grids.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.

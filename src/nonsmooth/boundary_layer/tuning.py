@@ -42,7 +42,7 @@ class Sampled:
 
     # relative error of the gain, unless asked; chosen: seconds, enough for a correction
     tolerance: float = 0.2
-    tolerance_on_grids: float = 0.05  # chosen: the same where u is known, for some seconds
+    tolerance_on_grids: float = 0.1  # chosen: the same where u is known, for some seconds
     share: float = 0.8  # chosen: part of the tolerance that is left to the paths where u is known
     scatter: float = 0.4  # chosen: part of the tolerance that the scatter is to have
     more: float = 8.0  # chosen: largest factor on the number of paths from one attempt to the next
