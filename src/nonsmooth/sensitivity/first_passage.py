@@ -6,6 +6,7 @@ difference takes several. The derivative is small where the probability is, so t
 line serves all times.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
@@ -55,7 +56,9 @@ def logarithmic_derivative(
     -------
     value, error : numpy.ndarray, shape (k,)
         The error is what finer grids and other places of the fit change, the largest of all times,
-        and at least some of what the change before was.
+        and at least some of what the change before was. Where fronts keep the transform from
+        falling on the line, fits are bad everywhere: a misfit above `tol` counts, too, times the
+        factor exp(1) that the inversion has at the last time.
 
     Raises
     ------
@@ -74,14 +77,16 @@ def logarithmic_derivative(
         changes = [np.max(np.abs(fine - coarse)) for coarse, fine in pairwise(found)]
         # two levels may agree by chance
         change = max(changes[-1], tuning.ADJOINT.falls * max(changes[-2:]))
-        return refinement.safety * change + refinement.by_chance * tol + rounding
+        seen = refinement.safety * change + refinement.by_chance * tol + rounding
+        # smaller ones mean less than they are, and other places show what they mean
+        return seen + (math.e * solver.misfit if solver.misfit > tol else 0.0)
 
     errors = [np.inf]
 
     def hopeless(_, error):
-        """Whether the error no longer falls: it is rounding then, or that of a fit to fronts."""
+        """Whether the error no longer falls, because it is rounding, or fits are far too bad."""
         errors.append(error)
-        return not errors[-1] < errors[-2]
+        return not errors[-1] < errors[-2] or solver.misfit > tuning.ADJOINT.misfit * tol
 
     found = until_agreement(
         [level.resolution for level in line.levels],
@@ -125,9 +130,10 @@ class _Solver:
         share = tuning.ADJOINT.negligible * self.accuracy
         self.begun = saddles.begin(self.abscissa, share)
         self._offset = 0.0
+        self.misfit = 0.0
 
     def solve(self, degree: int) -> np.ndarray:
-        """Solve on a grid, with other places on the line than before."""
+        """Solve on a grid, with other places on the line than before; note the misfit there."""
         question, times = self.question, self.question.times
         probability, fronts = self.problem.parts(degree, times, 0.0)
         line = vertical_lines.line(probability, self.abscissa)
@@ -136,15 +142,18 @@ class _Solver:
         def inverted(parts):
             if times[-1] <= fronts.min():
                 return np.zeros(len(times))
-            return vertical_lines.inverted(
+            found = vertical_lines.inverted(
                 parts,
                 replace(line, size=1.0),
                 np.maximum(fronts, self.begun),
                 self.accuracy,
                 rising=False,
                 offset=self._offset,
-            ).at(times)
+            )
+            self.misfit = max(self.misfit, found.misfit)
+            return found.at(times)
 
+        self.misfit = 0.0
         value = inverted(_differentiated(question, self.parameter, self.problem, degree))
         if self.parameter == "p":
             # p is a factor of the times, too: t times the density of the crossing time, of which

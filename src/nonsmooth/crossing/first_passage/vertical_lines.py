@@ -34,10 +34,13 @@ class Exponentials:
         t_0 of each part.
     terms : list of (numpy.ndarray, numpy.ndarray)
         p_k and log c_k of each part; the c_k themselves may be too large for a number.
+    misfit : float
+        Largest error of the fits at the samples, and at zeros far above, relative to the size of F.
     """
 
     delays: np.ndarray
     terms: list
+    misfit: float = 0.0
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """Evaluate the function at times, shape (k,)."""
@@ -124,9 +127,11 @@ def inverted(
         # above, the phase of exp(-z t_0) is rounded by more than the accuracy
         highest = accuracy / (tuning.VERTICAL_LINES.phase * np.max(delays))
     sampled = _sampled(scaled, line, accuracy, offset, highest)
-    terms, unit = [], tuning.VERTICAL_LINES.unit * abscissa
+    terms, misfit, unit = [], 0.0, tuning.VERTICAL_LINES.unit * abscissa
     for (z, values), delay in zip(sampled, delays, strict=True):
-        poles, residues = (unit * part for part in _residues(z, values, accuracy))
+        *found, error = _residues(z, values, accuracy)
+        misfit = max(misfit, error)
+        poles, residues = (unit * part for part in found)
         if rising:
             exponents, coefficients = poles, residues / abscissa
         else:  # the pole of 1 / z, at which F is minus the sum of the others
@@ -135,7 +140,7 @@ def inverted(
             coefficients = np.append(coefficients, -coefficients.sum())
         with np.errstate(divide="ignore"):  # of coefficients that are 0
             terms.append((exponents, np.log(coefficients) + np.log(size) + abscissa * delay))
-    return Exponentials(delays, terms)
+    return Exponentials(delays, terms, misfit)
 
 
 def _sampled(scaled, line, accuracy, offset, highest):
@@ -195,7 +200,7 @@ def _fit(z, values, accuracy, share):
 
 
 def _residues(z, values, accuracy):
-    """Poles to the left of the line, and residues at them.
+    """Poles to the left of the line, residues at them, and the largest error of the fit.
 
     The residues are fitted once more, to these poles alone: those of the rational function of a
     high degree are not accurate far from the line. Where F is as good as rounded, a close fit has
@@ -215,4 +220,4 @@ def _residues(z, values, accuracy):
         error = np.max(np.abs(columns @ strengths - wanted))
         if error < least:
             found, least = (poles, distances * strengths), error
-    return found
+    return *found, least if len(found[0]) else float(np.max(np.abs(values)))

@@ -43,7 +43,7 @@ def test_two_levels(levels):
 def test_blocks_are_independent():
     """The times of one run of two blocks are those of the first alone, and then others."""
     whole, first = (
-        coupled_passages(FRICTION, TIMES[:1], Sampling(0.1, paths, 5, threads=threads), (-1, 1))
+        coupled_passages(FRICTION, TIMES[:1], Sampling(0.1, paths, 5, threads=threads), (-1.0, 1.0))
         for paths, threads in ((2 * BLOCK, 2), (BLOCK, 1))
     )
     assert np.array_equal(whole[:, :BLOCK], first)
