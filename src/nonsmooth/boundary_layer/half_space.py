@@ -21,6 +21,8 @@ from nonsmooth.grids.tensor_grid import Grid, direct_solver
 from nonsmooth.linear_algebra.sylvester import sylvester
 from nonsmooth.scenes.scene import Scene
 
+SINGULAR = "the discretised Milne problem is singular in double precision"
+
 
 @dataclass(frozen=True)
 class Layer:
@@ -154,12 +156,15 @@ def _layer(g, odd_matrix, even_matrix, constant, mean, weights) -> Layer:
     without_flux = scipy.linalg.qr((flow * scale)[:, None])[0][:, 1:]
     product = (odd[kept] @ even[kept]) * scale / scale[:, None]
     # in the basis of its Schur form the root is quasi-triangular, too
-    form, vectors = scipy.linalg.schur(without_flux.T @ product @ without_flux)
+    try:
+        form, vectors = scipy.linalg.schur(without_flux.T @ product @ without_flux)
+    except ValueError:  # not finite, or without convergence
+        raise ToleranceError(SINGULAR) from None
     # imaginary parts come from modes in the tails that the grid does not resolve: other grids show
     # how much they matter
     root = np.real(scipy.linalg.sqrtm(form))
     if not np.all(np.isfinite(root)):
-        raise ToleranceError("the discretised Milne problem is singular in double precision")
+        raise ToleranceError(SINGULAR)
     modes = without_flux @ vectors
     shapes = scale[:, None] * modes
     decaying = even @ shapes

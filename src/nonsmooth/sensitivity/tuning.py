@@ -42,7 +42,7 @@ class Adjoint:
     """The differentiated transform of one variable."""
 
     negligible: float = 1e-2  # chosen: a share of F below so much of the accuracy counts as none
-    # chosen: a fit so many times worse than the tolerance is not good on finer grids either
+    # chosen: with fits so many times worse than the tolerance, differences are the faster way
     misfit: float = 100.0
     falls: float = 0.03  # chosen: least change of two levels, over the change before, for an error
     # fitted: to differences of probabilities that are solved to 1e-11

@@ -207,7 +207,7 @@ def _residues(z, values, accuracy):
     poles to the right, too, without which it is worse than a less close one.
     """
     line, settings = z[0].real, tuning.VERTICAL_LINES
-    found, least = (np.zeros(0, complex), np.zeros(0, complex)), np.inf
+    found, least = (np.zeros(0, complex), np.zeros(0, complex)), float(np.max(np.abs(values)))
     for share in settings.shares:
         if least <= accuracy or (fit := _fit(z, values, accuracy, share)) is None:
             break
@@ -220,4 +220,4 @@ def _residues(z, values, accuracy):
         error = np.max(np.abs(columns @ strengths - wanted))
         if error < least:
             found, least = (poles, distances * strengths), error
-    return *found, least if len(found[0]) else float(np.max(np.abs(values)))
+    return *found, least
