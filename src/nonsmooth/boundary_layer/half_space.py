@@ -21,8 +21,6 @@ from nonsmooth.grids.tensor_grid import Grid, direct_solver
 from nonsmooth.linear_algebra.sylvester import sylvester
 from nonsmooth.scenes.scene import Scene
 
-SINGULAR = "the discretised Milne problem is singular in double precision"
-
 
 @dataclass(frozen=True)
 class Layer:
@@ -40,7 +38,7 @@ class Layer:
     odd : numpy.ndarray, shape (nodes, modes)
         O.
     root : numpy.ndarray, shape (modes, modes)
-        R, upper quasi-triangular.
+        R.
     strengths : numpy.ndarray, shape (modes,)
         R^-1 w(0).
     """
@@ -155,20 +153,14 @@ def _layer(g, odd_matrix, even_matrix, constant, mean, weights) -> Layer:
     scale = 1 / np.sqrt(weights[kept] * np.abs(g[kept]))
     without_flux = scipy.linalg.qr((flow * scale)[:, None])[0][:, 1:]
     product = (odd[kept] @ even[kept]) * scale / scale[:, None]
-    # in the basis of its Schur form the root is quasi-triangular, too
-    try:
-        form, vectors = scipy.linalg.schur(without_flux.T @ product @ without_flux)
-    except ValueError:  # not finite, or without convergence
-        raise ToleranceError(SINGULAR) from None
     # imaginary parts come from modes in the tails that the grid does not resolve: other grids show
     # how much they matter
-    root = np.real(scipy.linalg.sqrtm(form))
+    root = np.real(scipy.linalg.sqrtm(without_flux.T @ product @ without_flux))
     if not np.all(np.isfinite(root)):
-        raise ToleranceError(SINGULAR)
-    modes = without_flux @ vectors
-    shapes = scale[:, None] * modes
+        raise ToleranceError("the discretised Milne problem is singular in double precision")
+    shapes = scale[:, None] * without_flux
     decaying = even @ shapes
-    leaving = decaying[kept] + (sign * scale)[:, None] * (modes @ root)
+    leaving = decaying[kept] + (sign * scale)[:, None] * (without_flux @ root)
     matrix = rows[:, None] * np.column_stack([constant[kept], leaving])
     norms = np.linalg.norm(matrix, axis=0)
     kappa, *strengths = np.linalg.solve(matrix / norms, rows * sign * u[kept]) / norms
@@ -205,6 +197,6 @@ def _integrals(layer, adjoint, masses):
     # of E[d d*] = w'^T E^T E* w*' - w^T O^T O* w*; Z is the integral of both if w(0) = R
     odd = layer.root.T @ (layer.odd.T @ adjoint.odd) @ adjoint.root
     overlap = layer.root.T @ (layer.even.T @ adjoint.even - odd) @ adjoint.root
-    overlap = sylvester(layer.root, adjoint.root, overlap)
+    overlap = sylvester(layer.root.T, adjoint.root, overlap)
     products = layer.strengths @ overlap @ adjoint.strengths
     return dipole, square * kappa - kappa**3 / 3 + moments + crossed + products

@@ -5,5 +5,5 @@
 `dense`
     Factorisations, eigenproblems and exponentials of dense matrices, during which Ctrl-C is heard.
 `sylvester`
-    Sylvester's equation with quasi-triangular matrices, by matrix products.
+    Sylvester's equation, by matrix products.
 """
