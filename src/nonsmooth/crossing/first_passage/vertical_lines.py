@@ -209,9 +209,9 @@ def _residues(z, values, accuracy):
     line, settings = z[0].real, tuning.VERTICAL_LINES
     found, least = (np.zeros(0, complex), np.zeros(0, complex)), float(np.max(np.abs(values)))
     for share in settings.shares:
-        if least <= accuracy or (fit := _fit(z, values, accuracy, share)) is None:
+        if least <= accuracy:
             break
-        poles = fit.poles()
+        poles = _fit(z, values, accuracy, share).poles()
         poles = poles[poles.real < line]
         places, wanted = _mirrored(z, values)
         distances = line - poles.real
