@@ -62,8 +62,7 @@ def test_fronts_are_left_to_differences(monkeypatch):
     """With g = sign(y) but for a small part, paths that never turn arrive together.
 
     The adjoint equation misses the tolerance, and differences answer, which agree with those of a
-    finer tolerance as far as it is met. No fit is good there: all grids had 0.97 in the place of
-    0.04, for each tolerance.
+    finer tolerance as far as it is met.
     """
     scene, refusals = ns.Scene("friction", n=1000, observable="friction_force"), []
     adjoint = first_passage.logarithmic_derivative
@@ -76,18 +75,29 @@ def test_fronts_are_left_to_differences(monkeypatch):
             raise
 
     monkeypatch.setattr(first_passage, "logarithmic_derivative", noted)
-    run = ns.crossing_sensitivity(scene, 0.6, [2.0], "p", p=10.0, tol=1e-3)
+    run = ns.crossing_sensitivity(scene, 0.6, HORIZONS, "p", p=10.0, tol=1e-4)
     (refused,) = refusals
-    question = Question(scene, -0.6, 0.6, np.array([2.0]), 10.0)
+    question = Question(scene, -0.6, 0.6, HORIZONS, 10.0)
     try:
-        fine, bound = differences.logarithmic_derivative(question, "p", 1e-4)
+        fine, bound = differences.logarithmic_derivative(question, "p", 3e-5)
     except ToleranceError as missed:  # on some processors
         fine, bound = missed.result
-    with pytest.raises(ToleranceError) as loose:
-        adjoint(question, "p", 0.5)
-    for value, error in (refused.result, loose.value.result):
-        assert np.all(np.abs(value - fine) <= error + bound)
+    value, error = refused.result
+    assert np.all(np.abs(value - fine) <= error + bound)
     assert np.all(np.abs(10.0 * run["derivative"] - fine) <= 10.0 * run["derivative_error"] + bound)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tol", [0.5, 1e-3])
+def test_what_no_fit_follows_is_refused(tol):
+    """With fronts, grids agreed on about 1 in the place of 0.04; the misfit of their fits tells."""
+    scene = ns.Scene("friction", n=1000, observable="friction_force")
+    question = Question(scene, -0.6, 0.6, np.array([2.0]), 10.0)
+    fine, bound = differences.logarithmic_derivative(question, "p", 1e-4)
+    with pytest.raises(ToleranceError) as refused:
+        first_passage.logarithmic_derivative(question, "p", tol)
+    value, error = refused.value.result
+    assert np.all(np.abs(value - fine) <= error + bound)
 
 
 def test_what_never_crosses_has_no_derivative():
