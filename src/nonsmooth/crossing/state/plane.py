@@ -10,7 +10,7 @@ approximation of the exponential that damps what the grid does not resolve; they
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import cache
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,6 +18,7 @@ from scipy.interpolate import make_interp_spline, pade
 from scipy.optimize import brentq
 from sympy import Symbol
 
+from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.state import tuning
 from nonsmooth.crossing.state.problem import StateCrossing
 from nonsmooth.errors import ToleranceError
@@ -28,7 +29,6 @@ from nonsmooth.grids.grading import distinct, geometric
 from nonsmooth.grids.mesh.axes import variables
 from nonsmooth.grids.mesh.box import half_widths
 from nonsmooth.grids.mesh.edges import element_edges
-from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
 from nonsmooth.scenes.symbols import x, y
@@ -44,9 +44,14 @@ def applies(asked: StateCrossing) -> bool:
 
 @dataclass(frozen=True)
 class _Level:
-    """Resolution of the grid and of the steps, the depth of the box, and what is added to it."""
+    """Resolution of the grid and of the steps, and the box.
 
-    number: int
+    `layers` tells how far the elements crowd. The box has a depth, and is enlarged by a margin.
+    """
+
+    degree: int
+    layers: int
+    steps: int
     depth: float
     margin: float = 0.0
 
@@ -66,10 +71,9 @@ def solved(asked: StateCrossing, times: np.ndarray, tol: float) -> tuple[np.ndar
     Returns
     -------
     probability, error : numpy.ndarray, shape (t,)
-        The error is twice the change by the last level, which refines grid and steps together, plus
-        what a larger box changes. The change is taken to be at least that by the level before over
-        the largest factor that a level gains, for errors may change their sign; and errors at one
-        time count at neighbouring ones.
+        The error is the sum of what the degree, the layers and the steps change if each alone is
+        made coarser by one, plus what a larger box changes. Changes may pass through zero; that of
+        a time is the largest at it and at some earlier ones.
 
     Raises
     ------
@@ -78,25 +82,22 @@ def solved(asked: StateCrossing, times: np.ndarray, tol: float) -> tuple[np.ndar
     """
     settings = tuning.PLANE
     depth = math.log(1 / tol) + settings.spare
+    also = np.multiply.outer(settings.earlier, times)
 
-    def solve(number):
-        return _probabilities(asked, times, _Level(number, depth))
+    @cache
+    def solve(at, margin=0.0):
+        return _probabilities(asked, also, _Level(*at, depth, margin))
+
+    coarsest = tuple(part.first + part.step for part in tuning.PLANE_PARTS)
+    box = 2 * np.abs(solve(coarsest, settings.margin) - solve(coarsest)).max(axis=0)
 
     def error(found):
-        changes = [np.abs(fine - coarse) for coarse, fine in pairwise(found)]
-        least = changes[-2].max() / settings.gain if len(changes) > 1 else 0.0
-        change = np.maximum(_nearby(changes[-1], times), least)
-        return settings.safety * change + settings.least
+        return found.change.max(axis=0) + box + settings.least
 
-    found = until_agreement(
-        range(settings.highest + 1),
-        solve,
-        error,
-        lambda _, error: bool(np.all(error <= settings.share * tol)),
+    found = refine_each_part(
+        tuning.PLANE_PARTS, solve, lambda found: bool(np.all(error(found) <= tol)), tol
     )
-    coarse = found.solutions[0]
-    wider = _probabilities(asked, times, _Level(0, depth, settings.margin))
-    value, total = np.clip(found.value, 0.0, 1.0), found.error + 2 * np.abs(wider - coarse)
+    value, total = np.clip(found.value[-1], 0.0, 1.0), error(found)
     if not np.all(total <= tol):
         raise ToleranceError(
             f"W = {value[-1]:.7g} has an error of {total.max():.1e}, above tol = {tol:g}; "
@@ -104,12 +105,6 @@ def solved(asked: StateCrossing, times: np.ndarray, tol: float) -> tuple[np.ndar
             (value, total),
         )
     return value, total
-
-
-def _nearby(errors, times):
-    """Largest error within a factor of two in time."""
-    near = np.abs(np.log(times[:, None] / times)) <= math.log(2)
-    return np.max(np.where(near, errors, 0.0), axis=1)
 
 
 def _probabilities(asked, times, level):
@@ -122,7 +117,7 @@ def _probabilities(asked, times, level):
         keep = np.outer(keep, inside if symbol == asked.variable else whole).ravel()
     generator = generator[keep][:, keep].tocsc()
     row = start_row(asked.scene, axes)[keep]
-    at, survival = _stepped(generator, row, times, level.number)
+    at, survival = _stepped(generator, row, times[-1], tuning.PLANE.refined[level.steps])
     return 1 - make_interp_spline(at, survival, k=5)(times)
 
 
@@ -133,11 +128,10 @@ def _axes(asked: StateCrossing, level: _Level) -> tuple[dict[Symbol, Axis], np.n
     again: q = 0 there flows in through the face.
     """
     scene, ends = asked.scene, _box(asked, level.depth)
-    degree = tuning.PLANE.degree + level.number
     walls = np.isfinite([asked.lower, asked.upper])
     made: dict[Symbol, Axis] = {}
     for symbol in variables(scene):
-        edges, free = _edges(asked, symbol, ends, level.number), np.full(2, True)
+        edges, free = _edges(asked, symbol, ends, level.layers), np.full(2, True)
         if symbol == asked.variable:
             free = ~walls
         beyond = edges[[0, -1]] + level.margin * ends[symbol] * np.array([-1, 1])
@@ -146,8 +140,8 @@ def _axes(asked: StateCrossing, level: _Level) -> tuple[dict[Symbol, Axis], np.n
             free = np.full(2, True)
         edges = np.concatenate([beyond[:1][free[:1]], edges, beyond[1:][free[1:]]])
         axis = continuous if symbol == scene.noise.driven else discontinuous
-        made[symbol] = axis(np.unique(edges), degree)
-    outside = walls * (1 if asked.driven else degree + 1)
+        made[symbol] = axis(np.unique(edges), level.degree)
+    outside = walls * (1 if asked.driven else level.degree + 1)
     inside = np.arange(len(made[asked.variable].nodes))
     return made, (inside >= outside[0]) & (inside[::-1] >= outside[1])
 
@@ -165,7 +159,11 @@ def _box(asked: StateCrossing, depth: float) -> dict[Symbol, float]:
         speed = math.sqrt(scene.noise.sigma**2 * depth / scene.damping + 2 * height)
         ends = {y: speed, x: max(-asked.lower, asked.upper)}
     else:
-        ends = half_widths(scene, depth)
+        ends = dict(half_widths(scene, depth))
+        # a level is where it is, unless so far away that no path comes there
+        far = half_widths(scene, depth + tuning.PLANE.beyond)[asked.variable]
+        levels = [abs(b) for b in (asked.lower, asked.upper) if math.isfinite(b)]
+        ends[asked.variable] = max(ends[asked.variable], min(max(levels), far))
     room = tuning.PLANE.around
     return {s: max(ends[s], room * abs(scene.start.get(s.name, 0.0))) for s in variables(scene)}
 
@@ -175,14 +173,14 @@ def _edges(asked: StateCrossing, symbol: Symbol, ends: Mapping, number: int) -> 
     settings, end = tuning.PLANE, ends[symbol]
     edges = element_edges(asked.scene, symbol, end, settings.layers + number)
     parts = np.linspace(-end, end, settings.elements + 1)
-    layers = settings.layers + 2 * number
+    layers = settings.crowded + 2 * number
     if symbol == asked.variable:
         lower, upper = max(asked.lower, -end), min(asked.upper, end)
         more = [edges, parts, np.array([lower, upper])]
         for level, side in ((asked.lower, 1), (asked.upper, -1)):
             if math.isfinite(level):
-                ratio = settings.rough_ratio if asked.driven else settings.ratio
-                more.append(level + side * geometric((upper - lower) / 2, ratio, layers))
+                here = (settings.rough_ratio, layers) if asked.driven else settings.fronts[number]
+                more.append(level + side * geometric((upper - lower) / 2, *here))
         edges = np.concatenate(more)
         edges = edges[(edges >= lower) & (edges <= upper)]
         return _apart(edges, np.array([lower, upper]), upper - lower)
@@ -219,18 +217,18 @@ def _turning_points(asked, symbol, end):
     return distinct(found, tuning.PLANE.closest * end) if found else np.empty(0)
 
 
-def _stepped(generator, row, times, number):
+def _stepped(generator, row, times, refined):
     """Survival probability from the start, at the times of the steps."""
     settings = tuning.PLANE
     poles, weights = _partial_fractions()
     step = times[0] * settings.first
-    longest = settings.longest / (1 + number) * max(times[0], 1.0)
+    longest = settings.longest / refined * max(times[0], 1.0)
     identity = sp.eye_array(generator.shape[0], format="csc")
     q, at, survival = np.ones(generator.shape[0]), [0.0], [1.0]
     factors: list[SparseFactors] = []
     while at[-1] < times[-1]:
         per_length = settings.per_length if 2 * step <= longest else settings.late
-        if at[-1] >= per_length * (1 + number) * step:
+        if at[-1] >= per_length * refined * step:
             step, factors = 2 * step, []
         factors = factors or [SparseFactors(pole * identity - step * generator) for pole in poles]
         q = sum(

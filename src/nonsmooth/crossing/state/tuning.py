@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from nonsmooth.crossing.first_passage.problem import Part
+
 
 @dataclass(frozen=True)
 class Line:
@@ -30,31 +32,33 @@ class Plane:
     """The backward equation of two variables on tensor grids."""
 
     tolerance: float = 1e-4  # chosen: absolute error unless the user asks for another
-    highest: int = 3  # chosen: last level, a minute or some
-    safety: float = 2.0  # chosen: the error is so many times the change by the last level
-    gain: float = 20.0  # chosen: largest factor by which a level reduces the error
-    share: float = 0.7  # chosen: part of the tolerance for the levels; the rest is for the box
     least: float = 1e-11  # derived: rounding of the steps
     spare: float = (
         6.0  # chosen: relative density at the end of the box, exp(-6) times the tolerance
     )
+    # chosen: the same for levels, which end the box. There W has a factor of some hundred and time
+    beyond: float = 15.0
     margin: float = 0.2  # chosen: by which the box is enlarged, to see whether its size matters
     around: float = 1.5  # chosen: the box ends at so many times the start, or farther out
     samples: int = 401  # chosen: points at which the height of the potential is looked for
-    degree: int = 3  # chosen: polynomial degree on level 0
+    # chosen: times, over one that is asked for, at which changes count, too
+    earlier: tuple[float, ...] = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
     elements: int = 6  # chosen: least number of elements of each variable
-    layers: int = 3  # chosen: ever smaller elements on level 0
-    # chosen: of neighbouring distances from a level and from the point where the flow turns. The
-    # solution there depends on (distance from the level) / (distance from the point)^3
-    ratio: float = 6.0
-    turn_ratio: float = 2.5
+    layers: int = 2  # chosen: least number of ever smaller elements ...
+    crowded: int = 1  # chosen: ... and of those at levels and where the flow turns
+    # chosen: ratio of neighbouring distances from a level of a transported variable, and their
+    # number. At early times a front leaves the level
+    fronts: tuple[tuple[float, int], ...] = ((6.0, 1), (4.0, 3), (3.0, 6), (2.5, 9), (2.0, 13))
+    turn_ratio: float = 2.5  # chosen: of neighbouring distances from the point where the flow turns
     rough_ratio: float = 3.0  # chosen: the same from a level of the variable that noise drives
     closest: float = 1e-7  # chosen: smallest element, over the size of the box
     first: float = 1e-2  # chosen: first step, over the first time
-    per_length: float = 4.0  # chosen: steps on level 0 before their length is doubled
-    # chosen: longest step on level 0 up to late times; later there are so many before it is doubled
+    # chosen: by how much steps are refined; 1.5 leaves a tenth of the error of 0.75 at most
+    refined: tuple[float, ...] = (0.75, 1.5, 3.0, 6.0)
+    per_length: float = 4.0  # chosen: steps before their length is doubled, unless refined
+    # chosen: longest step up to late times; later there are so many before it is doubled
     longest: float = 0.2
-    late: float = 60.0
+    late: float = 20.0
     # chosen: tolerance from which on paths, some seconds, are faster than two levels
     faster_sampled: float = 2e-3
 
@@ -78,4 +82,10 @@ class Sampled:
 
 LINE = Line()
 PLANE = Plane()
+# degree, layers, steps. A change counts as a fiftieth of the one before at least
+PLANE_PARTS = (
+    Part(3, 6, -1, 0.02),
+    Part(1, 4, -1, 0.02),
+    Part(1, 3, -1, 0.02, counted=0.3),
+)
 SAMPLED = Sampled()

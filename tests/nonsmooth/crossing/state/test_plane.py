@@ -39,6 +39,22 @@ def test_velocity_does_not_see_a_weak_spring():
     assert np.all(gap <= run["probability_error"] + 1e-5)
 
 
+@pytest.mark.parametrize(("damping", "sigma", "level"), [(2.0, 1.0, 3.0), (2.75, 0.8, 2.03)])
+def test_far_levels_stay_where_they_are(damping, sigma, level):
+    """Levels farther out than the grid must otherwise reach: an Ornstein-Uhlenbeck velocity.
+
+    Moved inwards to where the density is exp(-13), the level was crossed a hundred times as often.
+    """
+    parameters = {"noise": ns.White(sigma), "damping": damping}
+    levels = (-np.inf, level)
+    exact = ns.state_crossing_probability(
+        ns.Scene("elasto_plastic", **parameters), "y", levels, HORIZONS
+    )
+    weak = ns.Scene("elasto_plastic", n=20, potential="5e-7*x**2", **parameters)
+    run = solved(weak, "y", levels, 1e-3)
+    assert np.all(np.abs(run["probability"] - exact["probability"]) <= run["probability_error"])
+
+
 @pytest.mark.parametrize(
     ("scene", "variable", "levels"),
     [
@@ -74,3 +90,17 @@ def test_tight_tolerance():
     loose, tight = (solved(PLASTIC.with_n(5), "x", 0.7, tol) for tol in (1e-3, 3e-5))
     gap = np.abs(loose["probability"] - tight["probability"])
     assert np.all(gap <= loose["probability_error"])
+
+
+@pytest.mark.slow
+def test_early_fronts_are_followed():
+    """At early times a front leaves the level; 1e-4 is met, and paths agree."""
+    scene = ns.Scene("friction", n=3.5, damping=0.1, potential="0.7*x**2/2")
+    question = scene, "x", (-np.inf, 1.0), [0.4, 3.0, 4.5]
+    run = ns.state_crossing_probability(*question, method="deterministic", tol=1e-4)
+    counted = ns.state_crossing_probability(*question, step=0.02, paths=100_000, seed=5)
+    sure = stats.norm.isf(FALSE_ALARM / 2 / len(question[-1]))
+    allowed = run["probability_error"] + np.abs(counted["step_bias"])
+    allowed += sure * np.hypot(counted["standard_error"], counted["step_bias_error"])
+    assert np.all(np.abs(run["probability"] - counted["probability"]) <= allowed)
+    assert np.all(run["probability_error"] <= 1e-4)
