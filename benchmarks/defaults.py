@@ -24,6 +24,16 @@ from nonsmooth.errors import AccuracyWarning
 
 LIMIT = 60  # seconds of processor time
 HORIZONS, TIMES = [1.0, 2.0], [1.0, 10.0]
+LEVELS = {"friction": ("y", 0.5), "elasto_plastic": ("x", 0.5), "obstacle": ("x", 0.8)}
+ANSWERS = (
+    "probability",
+    "v",
+    "variance",
+    "hazard_rate",
+    "threshold",
+    "time",
+    "derivative",
+)  # names of what datasets hold
 # gamma^2 is known in closed form or on grids where a scene has a solver; each takes (scene, b)
 CALLS: dict[str, Callable] = {
     "asymptotic_variance": lambda scene, b: ns.asymptotic_variance(scene, threads=1),
@@ -40,6 +50,17 @@ CALLS: dict[str, Callable] = {
         scene, b, HORIZONS, 10, "corrected", threads=1
     ),
     "simulate": lambda scene, b: ns.simulate(scene, 10.0, threads=1),
+    "state crossing": lambda scene, b: ns.state_crossing_probability(
+        scene, LEVELS[scene.model][0], LEVELS[scene.model][1], HORIZONS, threads=1
+    ),
+    "hazard rate": lambda scene, b: ns.hazard_rate(scene, b, HORIZONS, 10, threads=1),
+    "mean time": lambda scene, b: ns.mean_time_to_failure(scene, b, 10, threads=1),
+    "threshold": lambda scene, b: ns.crossing_threshold(scene, 0.1, HORIZONS, 10, threads=1),
+    "failure time": lambda scene, b: ns.failure_time(scene, b, 0.5, 10, threads=1),
+    "sensitivity": lambda scene, b: ns.crossing_sensitivity(
+        scene, b, HORIZONS, "damping", 10, threads=1
+    ),
+    "gamma2's sensitivity": lambda scene, b: ns.asymptotic_variance_sensitivity(scene, "damping"),
 }
 
 
@@ -48,9 +69,10 @@ def summary(found):
     if isinstance(found, ns.Estimate):
         return found.value, found.error, found.method
     method = found.attrs.get("method", "grids" if "density_y" in found else "monte_carlo")
-    for name in ("probability", "v", "variance"):
+    for name in ANSWERS:
         if name in found:
-            return float(found[name][-1]), float(found[f"{name}_error"][-1]), method
+            value, error = (found[own].values.flat[-1] for own in (name, f"{name}_error"))
+            return float(value), float(error), method
     errors = {
         name: float(found[f"{name}_error"] / found[name].max())
         for name in found.data_vars
