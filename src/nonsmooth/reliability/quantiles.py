@@ -221,10 +221,17 @@ class _Question:
         options = {name: given[name] for name in ("step", "paths", "order")}
         self._tol = require_options(given["method"], options | {"tol": tol}).get("tol")
         self._refusal: str | None = None
+        self._answers: dict[tuple, xr.Dataset] = {}
         self.attributes: dict = {}
 
     def __call__(self, levels: np.ndarray, horizons: np.ndarray, tol: float | None) -> xr.Dataset:
-        """Return W; the refusal of a tolerance is noted."""
+        """Return W, computed once; the refusal of a tolerance is noted."""
+        key = levels.tobytes(), horizons.tobytes(), tol, self._given.get("method")
+        if key not in self._answers:
+            self._answers[key] = self._asked(levels, horizons, tol)
+        return self._answers[key]
+
+    def _asked(self, levels, horizons, tol):
         wanted: dict[str, Any] = {} if tol is None else {"tol": tol}
         try:
             found = crossing_probability(self._scene, levels, horizons, **self._given, **wanted)
