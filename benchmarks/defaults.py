@@ -25,15 +25,8 @@ from nonsmooth.errors import AccuracyWarning
 LIMIT = 60  # seconds of processor time
 HORIZONS, TIMES = [1.0, 2.0], [1.0, 10.0]
 LEVELS = {"friction": ("y", 0.5), "elasto_plastic": ("x", 0.5), "obstacle": ("x", 0.8)}
-ANSWERS = (
-    "probability",
-    "v",
-    "variance",
-    "hazard_rate",
-    "threshold",
-    "time",
-    "derivative",
-)  # names of what datasets hold
+# names of what datasets hold
+ANSWERS = "probability", "v", "variance", "hazard_rate", "threshold", "time", "derivative"
 # gamma^2 is known in closed form or on grids where a scene has a solver; each takes (scene, b)
 CALLS: dict[str, Callable] = {
     "asymptotic_variance": lambda scene, b: ns.asymptotic_variance(scene, threads=1),
@@ -51,7 +44,7 @@ CALLS: dict[str, Callable] = {
     ),
     "simulate": lambda scene, b: ns.simulate(scene, 10.0, threads=1),
     "state crossing": lambda scene, b: ns.state_crossing_probability(
-        scene, LEVELS[scene.model][0], LEVELS[scene.model][1], HORIZONS, threads=1
+        scene, *LEVELS[scene.model], HORIZONS, threads=1
     ),
     "hazard rate": lambda scene, b: ns.hazard_rate(scene, b, HORIZONS, 10, threads=1),
     "mean time": lambda scene, b: ns.mean_time_to_failure(scene, b, 10, threads=1),

@@ -14,10 +14,9 @@ import time
 import numpy as np
 
 import nonsmooth as ns
+from benchmarks.plane_crossing_honesty import FINER, STANDARD_ERRORS, ratio
 from nonsmooth.errors import ToleranceError
 
-STANDARD_ERRORS = 4.0  # false alarms: 6e-5 per probability
-FINER = 5.0  # the tolerance over that of the finer answer
 SOLVED = "whole", "part", "finer"
 RATIOS = "part", "finer", "paths"
 
@@ -46,18 +45,11 @@ def asked(scene, variable, interval, horizons, tol):
     began, met = time.process_time(), True
     try:
         found = ns.state_crossing_probability(
-            scene, variable, interval, horizons, method="deterministic", tol=tol
+            scene, variable, [interval], horizons, method="deterministic", tol=tol
         )
     except ToleranceError as error:
         found, met = error.result, False
     return found, met, time.process_time() - began
-
-
-def ratio(found, other, k=slice(None)):
-    """Largest difference of two answers over what both state."""
-    apart = np.abs(other["probability"].values - found["probability"].values[k])
-    stated = other["probability_error"].values + found["probability_error"].values[k]
-    return float(np.max(apart / stated))
 
 
 def ratio_to_paths(found, question, paths, seed):
@@ -66,9 +58,9 @@ def ratio_to_paths(found, question, paths, seed):
         *question, method="monte_carlo", paths=paths, seed=seed, threads=1
     )
     spread = np.maximum(sample.standard_error.values, 1 / paths)
-    allowed = found.probability_error.values + np.abs(sample.step_bias.values)
+    allowed = found.probability_error.values[0] + np.abs(sample.step_bias.values)
     allowed += STANDARD_ERRORS * (spread + sample.step_bias_error.values)
-    return float(np.max(np.abs(sample.probability.values - found.probability.values) / allowed))
+    return float(np.max(np.abs(sample.probability.values - found.probability.values[0]) / allowed))
 
 
 def row(seed, tol, paths):

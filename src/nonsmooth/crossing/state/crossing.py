@@ -89,7 +89,7 @@ def state_crossing_probability(
         Several thresholds are a dimension before it, as `crossing_probability` has them. By Monte
         Carlo the same paths serve all; solved ones take a solution each.
 
-        - ``"deterministic"``: the error is estimated from two resolutions.
+        - ``"deterministic"``: the error is estimated from what coarser resolutions change.
         - ``"monte_carlo"``: the bias of the time step and the standard error together, and `lower`
           and `upper` are 95 % confidence limits that account for both. Crossings within a step
           count: of the variable that noise drives by the law of the Brownian bridge, of smooth

@@ -36,7 +36,8 @@ class Plane:
     spare: float = (
         6.0  # chosen: relative density at the end of the box, exp(-6) times the tolerance
     )
-    # chosen: the same for levels, which end the box. There W has a factor of some hundred and time
+    # chosen: by how much deeper the box may be to reach a level. The density there is to be nothing
+    # even if it is multiplied by a long time and by the rate of crossings, some hundred
     beyond: float = 15.0
     margin: float = 0.2  # chosen: by which the box is enlarged, to see whether its size matters
     around: float = 1.5  # chosen: the box ends at so many times the start, or farther out
@@ -82,7 +83,8 @@ class Sampled:
 
 LINE = Line()
 PLANE = Plane()
-# degree, layers, steps. A change counts as a fiftieth of the one before at least
+# degree, layers, steps. A change counts as a share of the one before at least; 0.1, 0.03 and 0.02
+# were tried for their speed on five scenes. benchmarks/state_honesty.py has others
 PLANE_PARTS = (
     Part(3, 6, -1, 0.02),
     Part(1, 4, -1, 0.02),
