@@ -25,7 +25,7 @@ from nonsmooth.errors import AccuracyWarning
 LIMIT = 60  # seconds of processor time
 HORIZONS, TIMES = [1.0, 2.0], [1.0, 10.0]
 LEVELS = {"friction": ("y", 0.5), "elasto_plastic": ("x", 0.5), "obstacle": ("x", 0.8)}
-# names of what datasets hold
+# names of what datasets hold with an error
 ANSWERS = "probability", "v", "variance", "hazard_rate", "threshold", "time", "derivative"
 # gamma^2 is known in closed form or on grids where a scene has a solver; each takes (scene, b)
 CALLS: dict[str, Callable] = {
@@ -63,7 +63,7 @@ def summary(found):
         return found.value, found.error, found.method
     method = found.attrs.get("method", "grids" if "density_y" in found else "monte_carlo")
     for name in ANSWERS:
-        if name in found:
+        if f"{name}_error" in found:
             value, error = (found[own].values.flat[-1] for own in (name, f"{name}_error"))
             return float(value), float(error), method
     errors = {

@@ -18,6 +18,7 @@ from nonsmooth.checks import (
     require_seed,
     require_threads,
 )
+from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance
 from nonsmooth.crossing.probability import crossing_probability, require_options
 from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
@@ -91,7 +92,8 @@ def crossing_threshold(
     ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
 
     def reach(P, T):
-        return typical_reach(scene, p * T, P, seed, threads) / np.sqrt(p)
+        level, slope = typical_reach(scene, p * T, P, seed, threads)
+        return level / np.sqrt(p), slope
 
     pairs = [(P, T) for P in targets for T in horizons]
 
@@ -118,7 +120,12 @@ def crossing_threshold(
 
     return answered(
         lambda: ask.roots(
-            [P for P, _ in pairs], [reach(*pair) for pair in pairs], curves, curve, FALLING
+            [P for P, _ in pairs],
+            [reach(*pair) for pair in pairs],
+            curves,
+            curve,
+            lambda b: float(brownian_crossing(b * shape[1], 1.0, b * shape[0])),
+            FALLING,
         ),
         present,
         tol_given=tol is not None,
@@ -166,22 +173,25 @@ def failure_time(
     """
     require_random(scene)
     targets, pair = _probabilities(probability), np.array([bounds(threshold)])
+    shape = pair[0] / np.min(np.abs(pair))
     p, seed, threads = require_positive("p", p), require_seed(seed), require_threads(threads)
     given = {"method": method, "step": step, "paths": paths, "order": order}
     ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
 
     def guess(P):
         def reach(time):
-            return typical_reach(scene, time, P, seed, threads)
+            return typical_reach(scene, time, P, seed, threads)[0]
 
         level = np.sqrt(p) * np.min(np.abs(pair))
-        guessed = typical_time(reach, level, tuning.SCALE.longest / scene.damping) / p
+        time, power = typical_time(reach, level, tuning.SCALE.longest / scene.damping)
+        guessed = time / p
         if not SMALLEST < guessed < LARGEST:
             raise SceneError(
                 f"threshold is {quoted(threshold)}, which is crossed at about T = {guessed:.0e}; "
                 f"choose one that is crossed between {SMALLEST:g} and {LARGEST:g}"
             )
-        return guessed
+        # Brownian motion reaches levels in times that are like their squares
+        return guessed, 2 * power * typical_reach(scene, time, P, seed, threads)[1]
 
     def curves(x, tol):
         return [ask(pair, x, tol).isel(threshold=0)] * len(targets)
@@ -196,7 +206,14 @@ def failure_time(
         )
 
     return answered(
-        lambda: ask.roots(list(targets), [guess(P) for P in targets], curves, curve, RISING),
+        lambda: ask.roots(
+            list(targets),
+            [guess(P) for P in targets],
+            curves,
+            curve,
+            lambda T: float(brownian_crossing(shape[1], T, shape[0])),
+            RISING,
+        ),
         present,
         tol_given=tol is not None,
     )
@@ -264,29 +281,31 @@ class _Question:
     def roots(
         self,
         targets: list[float],
-        guesses: list[float],
+        guesses: list[tuple[float, float]],
         curves: Callable[..., list[xr.Dataset]],
         curve: Callable[..., xr.Dataset],
+        reference: Callable[[float], float],
         sense: int,
     ) -> list[Root]:
         """Find where W takes the values `targets`.
 
         By Monte Carlo all of them on the same paths, from `curves`, which returns W for each
-        target; otherwise one by one, from `curve`, which takes the number of the target.
+        target; otherwise one by one, from `curve`, which takes the number of the target. The
+        reference is W of Brownian motion.
         """
         tol = self.tolerance(targets)
         sampled = self._is_sampled()
         if not sampled and not {"method", "order"} & self._given.keys():
             sampled = (  # the method follows from the scene
                 default_tolerance(self._scene) is None
-                or curve(0, np.array(guesses[:1]), tol).attrs["method"] == "monte_carlo"
+                or curve(0, np.array(guesses[0][:1]), tol).attrs["method"] == "monte_carlo"
             )
         if sampled:
             self._given["method"] = "monte_carlo"
             found = _on_grids(curves, targets, guesses, sense, self.tolerance(targets))
         else:
             found = [
-                solved_root(partial(_one, partial(curve, k), tol), target, guess, sense)
+                solved_root(partial(_one, partial(curve, k), tol), reference, target, guess, sense)
                 for k, (target, guess) in enumerate(zip(targets, guesses, strict=True))
             ]
         if self._refusal is not None:
@@ -307,7 +326,7 @@ def _on_grids(curves, targets, guesses, sense, tol):
     """Invert sampled probabilities on a rough grid around guesses, then on a fine one."""
     grid = tuning.GRID
     spread = grid.rough_factor
-    spans = [(guess / spread, guess * spread) for guess in guesses]
+    spans = [(x / spread, x * spread) for x, _ in guesses]
     rough = _inverted(
         partial(curves, tol=grid.rough_tolerance * tol), targets, spans, grid.rough_values, sense
     )

@@ -4,19 +4,22 @@ from collections.abc import Callable
 
 import numpy as np
 
+from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.paths.ensembles import over_blocks
 from nonsmooth.paths.kernels.panel import PEAK
 from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.time_grids import equal_steps
+from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.reliability import tuning
+from nonsmooth.reliability.roots import FALLING, equivalent
 from nonsmooth.scenes.scene import Scene
 
 
 def typical_reach(
     scene: Scene, time: float, probability: float, seed: int | tuple, threads: int | None
-) -> float:
+) -> tuple[float, float]:
     """Guess the level that max |int g| exceeds with a probability by a time.
 
     Parameters
@@ -32,8 +35,11 @@ def typical_reach(
 
     Returns
     -------
-    float
+    level : float
         Positive.
+    slope : float
+        How fast the logarithm of that level of Brownian motion which is exceeded as often changes
+        with the logarithm of the level.
     """
     scale, step = tuning.SCALE, coarse_step(scene)
     simulated = min(time, scale.longest / scene.damping, scale.steps * step)
@@ -46,14 +52,22 @@ def typical_reach(
     found = np.hstack(list(over_blocks(scene, grid, sampling, peaks, control=False)))[0]
     least = scale.counted / scale.paths
     known = np.clip(probability, least, 1 - least)
-    near, far = np.quantile(found, [1 - np.sqrt(known), 1 - known])
+    both = np.array([np.sqrt(known), known])
+    near, far = np.quantile(found, 1 - both)
+    slope = 1.0
+    if 0 < near < far:
+        brownian = [equivalent(lambda b: brownian_crossing(b, 1.0), W, FALLING) for W in both]
+        slope = float(np.clip(np.diff(brownian)[0] / np.log(far / near), *scale.slopes))
     if probability < known and near < far:  # log W = a - c b^2 through both quantiles
-        slope = (far**2 - near**2) / (np.log(np.sqrt(known)) - np.log(known))
-        far = np.sqrt(far**2 + slope * np.log(known / probability))
-    return float(max(far, np.finfo(float).tiny) * np.sqrt(time / simulated))
+        fall = (far**2 - near**2) / (np.log(np.sqrt(known)) - np.log(known))
+        far = np.sqrt(far**2 + fall * np.log(known / probability))
+    level = max(far, np.finfo(float).tiny) * np.sqrt(time / simulated)
+    return float(level), slope
 
 
-def typical_time(reach: Callable[[float], float], level: float, start: float) -> float:
+def typical_time(
+    reach: Callable[[float], float], level: float, start: float
+) -> tuple[float, float]:
     """Guess when a level is reached, by the secant method in logarithms.
 
     Parameters
@@ -67,18 +81,20 @@ def typical_time(reach: Callable[[float], float], level: float, start: float) ->
 
     Returns
     -------
-    float
+    time : float
+    power : float
+        Of the time, with which the reach grows.
     """
-    scale, time, before = tuning.SCALE, np.log(start), None
+    scale, time, before, power = tuning.SCALE, np.log(start), None, tuning.SCALE.powers[0]
     for _ in range(scale.attempts):
         gap = np.log(level / reach(np.exp(time)))
-        if abs(gap) < np.log(scale.near):
-            break
         # late, int g spreads like the root of the time; early, like a power up to 3/2
         power = scale.powers[int(gap < 0)]
         if before is not None:
             found = (before[1] - gap) / (time - before[0])
-            power = np.clip(found, *scale.powers)
+            power = float(np.clip(found, *scale.powers))
         before = time, gap
         time += gap / power
-    return float(np.exp(time))
+        if abs(gap) < np.log(scale.near):
+            break
+    return float(np.exp(time)), power

@@ -6,10 +6,11 @@ whenever those of W hold there.
 """
 
 from collections.abc import Callable
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import logit
+from scipy.optimize import brentq
 
 from nonsmooth.reliability import tuning
 
@@ -53,17 +54,28 @@ class Root(NamedTuple):
 
 
 def solved_root(
-    evaluate: Callable[[np.ndarray], Values], target: float, guess: float, sense: int
+    evaluate: Callable[[np.ndarray], Values],
+    reference: Callable[[float], float],
+    target: float,
+    guess: tuple[float, float],
+    sense: int,
 ) -> Root:
-    """Find a root by the secant method in log x and logit W, which is nearly linear.
+    """Find a root by the secant method, from few values of W.
+
+    At x, W is what the reference is at some x*: the crossing probability of Brownian motion. In
+    their logarithms x* is a nearly linear function of x, so that two values of W tell its slope,
+    and with it the limits. Where errors of W hide the slope, limits are looked for by doubling.
 
     Parameters
     ----------
     evaluate : callable
         Takes increasing x > 0, shape (k,).
+    reference : callable
+        A function of one x with values from 0 to 1, monotone like W, and of nearly its shape.
     target : float
         P, between 0 and 1.
-    guess : float
+    guess : (float, float)
+        Of x, and of the slope.
     sense : {RISING, FALLING}
         Of W in x.
 
@@ -72,48 +84,135 @@ def solved_root(
     Root
         The error is the distance to the farther limit.
     """
-    search = tuning.SEARCH
-    x, slope, W, error = _secant(evaluate, target, guess, sense)
-    # in log x; where the slope is not known, doubling finds the limits
-    own = (error + abs(W - target)) / max(abs(slope) * W * (1 - W), np.finfo(float).tiny)
-    first = float(np.clip(search.margin * own, search.rounding, np.log(search.farthest)))
-    spread, done = np.array([first, first]), np.array([False, False])
-    while True:
-        ends = x * np.exp([-spread[0], spread[1]])
-        values = evaluate(ends)
-        done = np.array([values.before(target, sense)[0], values.after(target, sense)[1]])
-        if done.all():
-            break
-        spread[~done] *= 2
-        if spread.max() > np.log(search.widest):
-            break
-    lower, upper = np.where(done, ends, [0.0, np.inf])
-    return Root(x, max(x - lower, upper - x), float(lower), float(upper))
-
-
-def _secant(evaluate, target, guess, sense):
-    """Return x, d logit W / d log x there, W and its error."""
-    search, wanted = tuning.SEARCH, logit(target)
-    place, slope = np.log(guess), 2.0 * sense
-    left, right, before, distance = -np.inf, np.inf, None, np.inf
+    search, wanted = tuning.SEARCH, equivalent(reference, target, sense)
+    x, left, right, points = guess[0], 0.0, np.inf, []
     for _ in range(search.most):
-        W, error = (float(part[0]) for part in evaluate(np.exp([place]))[:2])
-        gap = sense * (logit(np.clip(W, 1e-300, 1 - 1e-16)) - wanted)
-        if before is not None and 0 < W < 1:
-            found = (gap - before[1]) / (place - before[0]) if place != before[0] else 0.0
-            slope = sense * found if 0 < found < np.inf else slope
-        distance, last = abs(W - target), distance
-        if distance <= search.close * error or right - left <= search.rounding:
+        values = evaluate(np.array([x]))
+        points.append(_point(np.log(x), values, reference, sense, wanted))
+        base = min(points, key=lambda point: abs(point.gap))
+        slope, doubt = _slope(points, base, guess[1])
+        root = _by_slope(base, slope, doubt)
+        if root is not None:
+            return root
+        distance = abs(float(values.probability[0]) - target)
+        settled = len(points) > 1 and distance <= search.close * float(values.error[0])
+        if settled or right - left <= search.rounding * x:
             break
-        if distance <= error and distance > search.falls * last:
-            break
-        left, right = (left, place) if gap > 0 else (place, right)
-        before = (place, gap) if 0 < W < 1 else None
-        reach = np.log(search.farthest)
-        place += np.clip(-gap / abs(slope), -reach, reach)
-        if not left < place < right:
-            place = (left + right) / 2
-    return float(np.exp(place)), slope, W, error
+        left, right = (left, x) if points[-1].gap > 0 else (x, right)
+        x *= np.exp(_step(points, slope))
+        if not left < x < right:
+            x = np.sqrt(left * right)
+    return _by_doubling(evaluate, target, sense, base, slope)
+
+
+def equivalent(reference: Callable[[float], float], W: float, sense: int) -> float:
+    """Find where a reference takes a value.
+
+    Parameters
+    ----------
+    reference : callable
+        A function of x > 0 with values from 0 to 1, monotone.
+    W : float
+    sense : {RISING, FALLING}
+
+    Returns
+    -------
+    float
+        log x; -inf or inf where only a limit has the value, or none.
+    """
+
+    def beyond(place):
+        return sense * (reference(np.exp(place)) - W)
+
+    end = tuning.SEARCH.ends
+    if beyond(-end) >= 0:
+        return -np.inf
+    if beyond(end) <= 0:
+        return np.inf
+    return brentq(beyond, -end, end, xtol=1e-14, rtol=1e-14)
+
+
+class _Point(NamedTuple):
+    """One value of W: log x, and how far log x* and its limits are from where W = P."""
+
+    place: float
+    gap: float
+    low: float
+    high: float
+
+
+def _point(place, values, reference, sense, wanted):
+    parts = (values.probability[0], values.lower[0], values.upper[0])
+    gap, *limits = (equivalent(reference, float(W), sense) - wanted for W in parts)
+    return _Point(place, gap, *sorted(limits))
+
+
+def _slope(points, base, guess):
+    """Return the slope near a point from those two points that tell it best, and its doubt.
+
+    The doubt is relative: from the errors, and from the distance over which the slope may change.
+    """
+    best = guess, np.inf
+    for one, two in combinations([point for point in points if np.isfinite(point.gap)], 2):
+        rise, run = two.gap - one.gap, two.place - one.place
+        if run == 0 or not 0 < rise / run < np.inf:
+            continue
+        errors = (one.high - one.low + two.high - two.low) / 2
+        farthest = max(abs(point.place - base.place) for point in (one, two))
+        doubt = errors / abs(rise) + tuning.SEARCH.bend * farthest
+        if doubt < best[1] or np.isinf(best[1]):
+            best = rise / run, doubt
+    return best
+
+
+def _by_slope(base, slope, doubt):
+    """Return the root that a point and the slope tell, or None where they tell too little."""
+    search = tuning.SEARCH
+    ways = -np.array([base.gap, base.high, base.low]) / slope
+    if not np.all(np.isfinite(ways)):
+        return None
+    doubts = doubt + search.bend * np.abs(ways)
+    vague = abs(base.gap) * doubt > search.vague * (base.high - base.low) / 2 + search.rounding
+    if vague or doubts.max() > search.doubt:
+        return None
+    way, first, last = ways
+    first = min(first / (1 - doubts[1]), first / (1 + doubts[1])) - search.rounding
+    last = max(last / (1 - doubts[2]), last / (1 + doubts[2])) + search.rounding
+    value, lower, upper = np.exp(base.place + np.array([way, first, last]))
+    return Root(value, max(value - lower, upper - value), lower, upper)
+
+
+def _step(points, slope):
+    """Return the next change of log x; the first is wide enough to tell the slope."""
+    search, last = tuning.SEARCH, points[-1]
+    gap, width = last.gap, (last.high - last.low) / 2
+    if np.isinf(width) and last.low * last.high > 0:  # beyond the root, and far as it may be
+        gap = np.copysign(np.inf, gap)
+    elif len(points) == 1 and np.isfinite(width):
+        gap = np.copysign(max(abs(gap), search.wide * width), gap)
+    reach = np.log(search.farthest)
+    return np.clip(-gap / slope, -reach, reach)
+
+
+def _by_doubling(evaluate, target, sense, point, slope):
+    """Look for limits on either side of a point, ever farther away."""
+    search, x = tuning.SEARCH, np.exp(point.place)
+    reach = max(abs(point.gap), abs(point.low), abs(point.high)) / slope
+    reach = float(np.clip(search.margin * reach, search.rounding, np.log(search.farthest)))
+    limits = []
+    for side in (-1, 1):
+        spread = reach
+        while spread <= np.log(search.widest):
+            end = x * np.exp([side * spread])
+            values = evaluate(end)
+            found = values.before(target, sense) if side < 0 else values.after(target, sense)
+            if found[0]:
+                limits.append(float(end[0]))
+                break
+            spread *= 2
+        else:
+            limits.append(0.0 if side < 0 else np.inf)
+    return Root(float(x), max(x - limits[0], limits[1] - x), *limits)
 
 
 def root_on_grid(x: np.ndarray, values: Values, target: float, sense: int) -> Root:

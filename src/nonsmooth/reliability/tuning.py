@@ -7,14 +7,16 @@ from dataclasses import dataclass
 class Scale:
     """The few paths that tell how far int g gets, to begin a search."""
 
-    paths: int = 1024  # chosen: a quantile to some per cent
+    paths: int = 8192  # chosen: a quantile to a per cent or two, a twentieth of a second
     longest: float = 100.0  # chosen: relaxation times that are simulated; later reach ~ sqrt(T)
     steps: float = 1e5  # chosen: of each path, at most; part of a second
     # chosen: of the guess of a time: how often the reach is sampled, the factor within which it
     # is near enough, and the powers of the time with which int g spreads late and early
     attempts: int = 8
-    near: float = 2.0
+    near: float = 1.1
     powers: tuple[float, float] = (0.5, 1.5)
+    # chosen: of the level of Brownian motion, as a power of the level; larger than has been seen
+    slopes: tuple[float, float] = (0.2, 5.0)
     counted: float = 20.0  # chosen: paths beyond the outermost quantile that is read off
 
 
@@ -26,7 +28,13 @@ class Search:
     surest: float = 1e-9  # chosen: least distance of P from 1; nearer ones are not told apart
     farthest: float = 2.0  # chosen: largest factor of one step of the secant method
     close: float = 0.1  # chosen: distance of W from P, over the error of W, at which it ends
-    falls: float = 0.5  # chosen: within the error it ends once the distance falls by less
+    ends: float = 50.0  # derived: log x within which Brownian motion crosses with any P but 0 and 1
+    # chosen: relative change of the slope of log x* over log x, for a change of log x by 1; the
+    # largest doubt of the slope, and the largest doubt of the root over the error
+    bend: float = 2.0
+    doubt: float = 0.3
+    vague: float = 0.5
+    wide: float = 10.0  # chosen: first step over the error, so that the slope is seen
     rounding: float = 1e-12  # derived: relative distance of roots that rounding cannot tell apart
     most: int = 30  # chosen: a bisection from a factor of 2 has 1e-9 then
     margin: float = 1.2  # chosen: of the first limits, over what the slope at the root tells

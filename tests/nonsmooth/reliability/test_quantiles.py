@@ -113,8 +113,9 @@ def test_times_of_near_thresholds():
 @pytest.mark.parametrize("level", [1e-12, 1.0, 1e12])
 def test_guesses_of_times(power, level):
     """Reaches that are powers of the time are inverted to within the factor asked for."""
-    guess = typical_time(lambda time: 3 * time**power, level, 100.0)
-    assert 0.5 < (guess / (level / 3) ** (1 / power)) ** power < 2
+    guess, found = typical_time(lambda time: 3 * time**power, level, 100.0)
+    assert guess == pytest.approx((level / 3) ** (1 / power), rel=1e-9)
+    assert found == pytest.approx(power)
 
 
 @pytest.mark.slow

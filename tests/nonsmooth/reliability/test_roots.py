@@ -7,11 +7,26 @@ import nonsmooth as ns
 from nonsmooth.reliability.roots import FALLING, RISING, Values, root_on_grid, solved_root
 
 
-def brownian(error, wrong, sense):
+REFERENCE = {
+    RISING: lambda x: float(ns.brownian_crossing(1.0, x)),
+    FALLING: lambda x: float(ns.brownian_crossing(x, 1.0)),
+}
+
+
+def straight(x):
+    return x
+
+
+def warped(x):
+    """Slopes of 1.2 to 2.8 in logarithms, as when int g spreads faster at early times."""
+    return x**2 * np.exp(0.8 * np.sin(np.log(x)))
+
+
+def brownian(error, wrong, sense, warp=straight):
     """W_star in b or in T, off by `wrong` times a stated error."""
 
     def evaluate(x):
-        W = ns.brownian_crossing(x, 1.0) if sense == FALLING else ns.brownian_crossing(1.0, x)
+        W = np.array([REFERENCE[sense](one) for one in warp(np.asarray(x))])
         shown = np.clip(W + wrong * error, 0, 1)
         limits = np.clip(shown - error, 0, 1), np.clip(shown + error, 0, 1)
         return Values(shown, np.full(len(x), error), *limits)
@@ -19,33 +34,56 @@ def brownian(error, wrong, sense):
     return evaluate
 
 
-def inside(root, target, sense):
+def inside(root, target, sense, warp=straight):
     """Whether W_star takes the value between the limits: it is monotone."""
-    exact = brownian(0.0, 0.0, sense)
+    exact = brownian(0.0, 0.0, sense, warp)
     ends = exact(np.array([root.lower, root.upper])).probability
     return sense * ends[0] <= sense * target <= sense * ends[1]
 
 
+@pytest.mark.parametrize("warp", [straight, warped])
 @pytest.mark.parametrize("sense", [RISING, FALLING])
-@pytest.mark.parametrize("wrong", [-1.0, 0.0, 0.9])
-@pytest.mark.parametrize("target", [1e-6, 0.02, 0.5, 0.97])
-def test_limits_hold_the_root_if_those_of_W_hold(target, wrong, sense):
+@pytest.mark.parametrize("wrong", [-1.0, 0.9])
+@pytest.mark.parametrize("target", [1e-6, 0.5, 0.97])
+def test_limits_hold_the_root_if_those_of_W_hold(target, wrong, sense, warp):
     """Errors from rounding to a third of P, from guesses that are off by a factor of 20."""
     for relative in (1e-9, 1e-4, 0.3):
         error = relative * min(target, 1 - target)
-        for guess in (0.05, 1.0, 20.0):
-            root = solved_root(brownian(error, wrong, sense), target, guess, sense)
+        for guess in (0.05, 20.0):
+            shown = brownian(error, wrong, sense, warp)
+            root = solved_root(shown, REFERENCE[sense], target, (guess, 1.0), sense)
             assert 0 < root.lower <= root.value <= root.upper < np.inf
-            assert inside(root, target, sense)
+            assert inside(root, target, sense, warp)
             # not much wider than twice the error of W, in terms of W
-            ends = brownian(0.0, 0.0, sense)(np.array([root.lower, root.upper])).probability
+            ends = brownian(0.0, 0.0, sense, warp)(np.array([root.lower, root.upper])).probability
             assert abs(ends[1] - ends[0]) < 9 * error + 1e-10
+
+
+@pytest.mark.parametrize("sense", [RISING, FALLING])
+@pytest.mark.parametrize("relative", [1e-6, 1e-3])
+@pytest.mark.parametrize(("warp", "most"), [(straight, 2), (warped, 4)])
+def test_few_values_suffice(warp, most, relative, sense):
+    """From a guess that is off by a few per cent, as from a thousand paths."""
+    rng = np.random.default_rng(5)
+    for target in (1e-6, 0.1, 0.5, 0.97):
+        start = brownian(1e-13, 0.0, sense, warp), REFERENCE[sense], target, (1.0, 1.0), sense
+        exact = solved_root(*start)
+        asked = []
+
+        def counted(x, target=target, asked=asked):
+            asked.extend(x)
+            return brownian(relative * min(target, 1 - target), 1.0, sense, warp)(x)
+
+        guess = exact.value * np.exp(rng.uniform(-0.03, 0.03))
+        root = solved_root(counted, REFERENCE[sense], target, (guess, 1.0), sense)
+        assert len(asked) <= most
+        assert inside(root, target, sense, warp)
 
 
 @pytest.mark.parametrize("sense", [RISING, FALLING])
 def test_a_limit_stays_open_where_the_error_leaves_it_open(sense):
     """An error of 0.3 around P = 0.1: W may be as small as it likes."""
-    root = solved_root(brownian(0.3, 0.0, sense), 0.1, 1.0, sense)
+    root = solved_root(brownian(0.3, 0.0, sense), REFERENCE[sense], 0.1, (1.0, 1.0), sense)
     assert (root.lower == 0) if sense == RISING else np.isinf(root.upper)
     assert np.isfinite(root.upper) if sense == RISING else root.lower > 0
 
