@@ -25,7 +25,15 @@ from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.reliability import tuning
 from nonsmooth.reliability.reach import typical_reach, typical_time
-from nonsmooth.reliability.roots import FALLING, RISING, Root, Values, root_on_grid, solved_root
+from nonsmooth.reliability.roots import (
+    FALLING,
+    RISING,
+    Root,
+    Values,
+    equivalent,
+    root_on_grid,
+    solved_root,
+)
 from nonsmooth.results import between_limits
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
@@ -91,8 +99,12 @@ def crossing_threshold(
     given = {"method": method, "step": step, "paths": paths, "order": order}
     ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
 
-    def reach(P, T):
-        level, slope = typical_reach(scene, p * T, P, seed, threads)
+    def brownian(b):
+        return float(brownian_crossing(b * shape[1], 1.0, b * shape[0]))
+
+    def guess(P, T):
+        equal = np.exp(equivalent(brownian, P, FALLING))
+        level, slope = typical_reach(scene, p * T, equal, seed, threads)
         return level / np.sqrt(p), slope
 
     pairs = [(P, T) for P in targets for T in horizons]
@@ -121,10 +133,10 @@ def crossing_threshold(
     return answered(
         lambda: ask.roots(
             [P for P, _ in pairs],
-            [reach(*pair) for pair in pairs],
+            [guess(*pair) for pair in pairs],
             curves,
             curve,
-            lambda b: float(brownian_crossing(b * shape[1], 1.0, b * shape[0])),
+            brownian,
             FALLING,
         ),
         present,
@@ -178,9 +190,15 @@ def failure_time(
     given = {"method": method, "step": step, "paths": paths, "order": order}
     ask = _Question(scene, given | {"p": p, "seed": seed, "threads": threads}, tol)
 
+    def brownian(T):
+        return float(brownian_crossing(shape[1], T, shape[0]))
+
     def guess(P):
+        # Brownian motion reaches levels in times that are like their squares
+        equal = np.exp(-equivalent(brownian, P, RISING) / 2)
+
         def reach(time):
-            return typical_reach(scene, time, P, seed, threads)[0]
+            return typical_reach(scene, time, equal, seed, threads)[0]
 
         level = np.sqrt(p) * np.min(np.abs(pair))
         time, power = typical_time(reach, level, tuning.SCALE.longest / scene.damping)
@@ -190,8 +208,7 @@ def failure_time(
                 f"threshold is {quoted(threshold)}, which is crossed at about T = {guessed:.0e}; "
                 f"choose one that is crossed between {SMALLEST:g} and {LARGEST:g}"
             )
-        # Brownian motion reaches levels in times that are like their squares
-        return guessed, 2 * power * typical_reach(scene, time, P, seed, threads)[1]
+        return guessed, 2 * power * typical_reach(scene, time, equal, seed, threads)[1]
 
     def curves(x, tol):
         return [ask(pair, x, tol).isel(threshold=0)] * len(targets)
@@ -211,7 +228,7 @@ def failure_time(
             [guess(P) for P in targets],
             curves,
             curve,
-            lambda T: float(brownian_crossing(shape[1], T, shape[0])),
+            brownian,
             RISING,
         ),
         present,

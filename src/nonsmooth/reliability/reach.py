@@ -18,9 +18,9 @@ from nonsmooth.scenes.scene import Scene
 
 
 def typical_reach(
-    scene: Scene, time: float, probability: float, seed: int | tuple, threads: int | None
+    scene: Scene, time: float, brownian: float, seed: int | tuple, threads: int | None
 ) -> tuple[float, float]:
-    """Guess the level that max |int g| exceeds with a probability by a time.
+    """Guess the level that max |int g| exceeds by a time as often as Brownian motion another one.
 
     Parameters
     ----------
@@ -28,8 +28,9 @@ def typical_reach(
     time : float
         "1"; beyond some relaxation times, or many steps, the level is taken to grow like its square
         root.
-    probability : float
-        What is rarer than the paths can tell is taken from a normal tail.
+    brownian : float
+        The level of Brownian motion by the time 1, "1". Where it is rarer, or more frequent, than
+        the paths can tell, the level is extrapolated.
     seed, threads
         As for `crossing_probability`.
 
@@ -38,8 +39,7 @@ def typical_reach(
     level : float
         Positive.
     slope : float
-        How fast the logarithm of that level of Brownian motion which is exceeded as often changes
-        with the logarithm of the level.
+        Of the logarithm of the level of Brownian motion over that of the level.
     """
     scale, step = tuning.SCALE, coarse_step(scene)
     simulated = min(time, scale.longest / scene.damping, scale.steps * step)
@@ -51,18 +51,15 @@ def typical_reach(
     grid = equal_steps([simulated], step)
     found = np.hstack(list(over_blocks(scene, grid, sampling, peaks, control=False)))[0]
     least = scale.counted / scale.paths
-    known = np.clip(probability, least, 1 - least)
+    known = np.clip(brownian_crossing(brownian, 1.0), least, 1 - least)
     both = np.array([np.sqrt(known), known])
     near, far = np.quantile(found, 1 - both)
+    levels = [equivalent(lambda b: brownian_crossing(b, 1.0), W, FALLING) for W in both]
     slope = 1.0
     if 0 < near < far:
-        brownian = [equivalent(lambda b: brownian_crossing(b, 1.0), W, FALLING) for W in both]
-        slope = float(np.clip(np.diff(brownian)[0] / np.log(far / near), *scale.slopes))
-    if probability < known and near < far:  # log W = a - c b^2 through both quantiles
-        fall = (far**2 - near**2) / (np.log(np.sqrt(known)) - np.log(known))
-        far = np.sqrt(far**2 + fall * np.log(known / probability))
-    level = max(far, np.finfo(float).tiny) * np.sqrt(time / simulated)
-    return float(level), slope
+        slope = float(np.clip(np.diff(levels)[0] / np.log(far / near), *scale.slopes))
+    far = max(far, np.finfo(float).tiny) * np.exp((np.log(brownian) - levels[1]) / slope)
+    return float(far * np.sqrt(time / simulated)), slope
 
 
 def typical_time(

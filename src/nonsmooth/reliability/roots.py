@@ -198,7 +198,7 @@ def _by_doubling(evaluate, target, sense, point, slope):
     """Look for limits on either side of a point, ever farther away."""
     search, x = tuning.SEARCH, np.exp(point.place)
     reach = max(abs(point.gap), abs(point.low), abs(point.high)) / slope
-    reach = float(np.clip(search.margin * reach, search.rounding, np.log(search.farthest)))
+    reach = float(np.clip(search.margin * reach, search.rounding, np.log(search.first)))
     limits = []
     for side in (-1, 1):
         spread = reach

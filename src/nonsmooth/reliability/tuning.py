@@ -26,7 +26,8 @@ class Search:
 
     share: float = 0.1  # chosen: of P and of 1 - P, the largest error of W unless tol is given
     surest: float = 1e-9  # chosen: least distance of P from 1; nearer ones are not told apart
-    farthest: float = 2.0  # chosen: largest factor of one step of the secant method
+    farthest: float = 10.0  # chosen: largest factor of one step of the secant method
+    first: float = 2.0  # chosen: largest factor to the first limits
     close: float = 0.1  # chosen: distance of W from P, over the error of W, at which it ends
     ends: float = 50.0  # derived: log x within which Brownian motion crosses with any P but 0 and 1
     # chosen: relative change of the slope of log x* over log x, for a change of log x by 1; the
