@@ -254,13 +254,13 @@ def _attempts(scene, thresholds, horizons, p, given):
         return formula + attempts
     windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(choice.window)
     pilot, least = least_steps(scene, p * horizons[-1], tol)
+    kind = scene.dimension - 1
 
     def sampled(seconds):
-        most = seconds / choice.seconds_of_step
+        most = seconds / choice.seconds_of_step[kind]
         fast = pilot <= choice.pilot_share * most and least <= most
         return [("monte_carlo", {"most": most})] if fast else []
 
-    kind = scene.dimension - 1
     solves = windows * (1 + choice.one_more[kind] * (len(thresholds) - 1))
     attempts = sampled(solves * choice.seconds_solved[kind]) + attempts
     if formula:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 class MethodChoice:
     """Times that predict which method meets a tolerance first; seconds are those of one core."""
 
-    # seconds for a coarse step of a path, everything included; fitted: measured on one machine, the
-    # choices that follow are checked by benchmarks/requests.py
-    seconds_of_step: float = 4e-9
+    # seconds for a coarse step of a path of one and of two variables, everything included; fitted:
+    # measured on one machine, the choices that follow are checked by benchmarks/requests.py
+    seconds_of_step: tuple[float, float] = (4e-9, 1.1e-8)
     # seconds of the deterministic method for one and for two variables, for each factor `window`
     # between the first and the last time; fitted: as above
     seconds_solved: tuple[float, float] = (0.4, 8.0)

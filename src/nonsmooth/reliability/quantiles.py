@@ -105,6 +105,11 @@ def crossing_threshold(
     def guess(P, T):
         equal = np.exp(equivalent(brownian, P, FALLING))
         level, slope = typical_reach(scene, p * T, equal, seed, threads)
+        if level < SMALLEST:
+            raise SceneError(
+                f"probability is {P:g}, but up to T = {T:g} it is about as likely or likelier that "
+                f"int g stays 0, where g = {quoted(scene.observable)}; choose a smaller one"
+            )
         return level / np.sqrt(p), slope
 
     pairs = [(P, T) for P in targets for T in horizons]

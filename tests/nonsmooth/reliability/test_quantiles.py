@@ -9,6 +9,8 @@ from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.reliability.reach import typical_time
 from references import FRICTION, GAMMA2
 
+DEAD_BAND = ns.Scene("friction", observable="sign(y)*max(abs(y) - 0.3, 0)")
+
 
 @pytest.mark.slow
 def test_deterministic_threshold_inverts_W_and_the_time_inverts_the_threshold():
@@ -74,6 +76,7 @@ def test_scenes_without_solver_are_sampled():
         (lambda: ns.crossing_threshold(FRICTION, 0.0, 2.0), "between 0 and 1"),
         (lambda: ns.crossing_threshold(FRICTION, [0.1, 1.0], 2.0), "between 0 and 1"),
         (lambda: ns.crossing_threshold(FRICTION, 0.1, 2.0, sides="left"), "choose from both"),
+        (lambda: ns.crossing_threshold(DEAD_BAND, 0.9, 0.02), "likelier that int g stays 0"),
         (lambda: ns.failure_time(FRICTION, -0.6), "threshold > 0"),
         (lambda: ns.failure_time(FRICTION, 1e30), "threshold is 1e.30, which is crossed at"),
         (lambda: ns.failure_time(FRICTION, 0.6, "half"), "give numbers"),

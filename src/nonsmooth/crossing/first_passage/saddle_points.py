@@ -18,6 +18,7 @@ from scipy.interpolate import CubicSpline
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import LaplaceProblem
 from nonsmooth.errors import ToleranceError
+from nonsmooth.progress import begin
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,7 @@ def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:
     ToleranceError
         If F is no transform of a probability on a coarse grid.
     """
+    begin()
     log_z, log_F, growth = _samples(problem, times)
     # -log F grows at most by the factor exp(spacing) from one sample to the next. If the second one
     # is rounding already, F is tiny at all z: nothing crosses.
