@@ -11,7 +11,6 @@ from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.time_grids import equal_steps
-from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.reliability import tuning
 from nonsmooth.reliability.roots import FALLING, equivalent
 from nonsmooth.scenes.scene import Scene
@@ -54,12 +53,16 @@ def typical_reach(
     known = np.clip(brownian_crossing(brownian, 1.0), least, 1 - least)
     both = np.array([np.sqrt(known), known])
     near, far = np.quantile(found, 1 - both)
-    levels = [equivalent(lambda b: brownian_crossing(b, 1.0), W, FALLING) for W in both]
+    levels = [equivalent(_two_sided, W, FALLING) for W in both]
     slope = 1.0
     if 0 < near < far:
         slope = float(np.clip(np.diff(levels)[0] / np.log(far / near), *scale.slopes))
     far = max(far, np.finfo(float).tiny) * np.exp((np.log(brownian) - levels[1]) / slope)
     return float(far * np.sqrt(time / simulated)), slope
+
+
+def _two_sided(b):
+    return float(brownian_crossing(b, 1.0))
 
 
 def typical_time(

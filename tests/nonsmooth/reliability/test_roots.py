@@ -6,7 +6,6 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.reliability.roots import FALLING, RISING, Values, root_on_grid, solved_root
 
-
 REFERENCE = {
     RISING: lambda x: float(ns.brownian_crossing(1.0, x)),
     FALLING: lambda x: float(ns.brownian_crossing(x, 1.0)),
@@ -14,6 +13,7 @@ REFERENCE = {
 
 
 def straight(x):
+    """Brownian motion itself."""
     return x
 
 
