@@ -34,7 +34,7 @@ class Search:
     # largest doubt of the slope, and the largest doubt of the root over the error
     bend: float = 2.0
     doubt: float = 0.3
-    vague: float = 0.5
+    vague: float = 1.0
     wide: float = 10.0  # chosen: first step over the error, so that the slope is seen
     rounding: float = 1e-12  # derived: relative distance of roots that rounding cannot tell apart
     most: int = 30  # chosen: a bisection from a factor of 2 has 1e-9 then
