@@ -1,6 +1,7 @@
 """The one loop that refines, until two levels agree."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from operator import length_hint
@@ -38,6 +39,29 @@ class Refined:
     solutions: tuple = ()
 
 
+@contextmanager
+def solvable() -> Iterator[None]:
+    """Refuse equations that cannot be solved, as a `ToleranceError`.
+
+    Raises
+    ------
+    ToleranceError
+        If they are singular in double precision, or the memory does not hold them.
+    """
+    try:
+        yield
+    except (np.linalg.LinAlgError, ArpackError) as error_of_library:
+        raise ToleranceError(
+            f"the equations are singular in double precision ({error_of_library}); give "
+            "parameters of more similar sizes or use Monte Carlo"
+        ) from None
+    except MemoryError:
+        raise ToleranceError(
+            "the memory does not hold the equations; choose a larger tol, parameters of "
+            "more similar sizes or Monte Carlo, or free memory"
+        ) from None
+
+
 def until_agreement(
     levels: Iterable,
     solve: Callable[[Any], Any],
@@ -71,28 +95,18 @@ def until_agreement(
     Raises
     ------
     ToleranceError
-        If the equations of the first or second level are singular in double precision, or the
-        memory does not hold them.
+        If the first or the second level is refused, or its equations are not `solvable`.
     """
     solutions, estimate = [], None
     with counter("levels of resolution", length_hint(levels)) as advance:
         for level in levels:
             try:
-                solutions.append(interruptible(partial(solve, level)))
-            except (np.linalg.LinAlgError, ArpackError) as error_of_library:
+                with solvable():
+                    solutions.append(interruptible(partial(solve, level)))
+            except ToleranceError:
                 if estimate is not None:  # what the levels before have found remains
                     break
-                raise ToleranceError(
-                    f"the equations are singular in double precision ({error_of_library}); give "
-                    "parameters of more similar sizes or use Monte Carlo"
-                ) from None
-            except MemoryError:
-                if estimate is not None:
-                    break
-                raise ToleranceError(
-                    "the memory does not hold the equations; choose a larger tol, parameters of "
-                    "more similar sizes or Monte Carlo, or free memory"
-                ) from None
+                raise
             advance(1)
             if len(solutions) < 2:
                 continue

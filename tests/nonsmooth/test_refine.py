@@ -50,6 +50,24 @@ def test_singular_equations_are_refused():
         until_agreement([1], lambda level: np.linalg.inv(np.zeros((2, 2))), None, None)
 
 
+@pytest.mark.parametrize(
+    "failure",
+    [np.linalg.LinAlgError("not of full rank"), MemoryError(), ToleranceError("the factors")],
+)
+def test_what_is_known_outlives_a_level_that_fails(failure):
+    """Two levels have a value and an error; one has none."""
+
+    def solve(level):
+        if level == 3:
+            raise failure
+        return 2.0**-level
+
+    found = until_agreement(range(1, 9), solve, lambda s: s[-1], lambda value, error: False)
+    assert (found.value, found.error, found.met) == (1 / 4, 1 / 4, False)
+    with pytest.raises(ToleranceError, match=r"full rank|memory|factors"):
+        until_agreement(range(2, 9), solve, lambda s: s[-1], lambda value, error: False)
+
+
 @pytest.mark.parametrize("ratio", [0.5, 0.75, 0.9])
 def test_what_follows_of_a_geometric_series(ratio):
     """The sum of all further terms is counted in units of the last one."""

@@ -18,9 +18,10 @@ import numpy as np
 
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import Part
+from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.ordinates_plane import UnstableError
 from nonsmooth.progress import counter
-from nonsmooth.refine import further_terms
+from nonsmooth.refine import further_terms, solvable
 
 
 @dataclass(frozen=True)
@@ -59,19 +60,22 @@ def refine_each_part(
     Returns
     -------
     Found
-        The last, or the last before a grid is unstable or no longer better, or from which on the
-        tolerance is out of reach.
+        The last, or the last before a grid is unstable, refused or no longer better, or from which
+        on the tolerance is out of reach.
 
     Raises
     ------
     UnstableError
         If the first one is, and the next one, too.
+    ToleranceError
+        If the first one is refused, or its equations are not `solvable`.
     """
     with counter("solutions") as advance:
 
         @cache
         def solution(at):
-            found = solve(at)
+            with solvable():
+                found = solve(at)
             advance(1)
             return found
 
@@ -103,10 +107,10 @@ def _refined(parts, solution, met, tol):
             if before is None:
                 before = _changes_from_coarser(parts, solution, at)
                 floor = falls * np.abs(before)
-        except UnstableError:
+        except (UnstableError, ToleranceError) as refused:
             if found is not None:
                 return found
-            if at != begun:
+            if at != begun or not isinstance(refused, UnstableError):
                 raise
             at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
             continue

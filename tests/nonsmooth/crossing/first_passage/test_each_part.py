@@ -5,6 +5,7 @@ import pytest
 
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.problem import Part
+from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.ordinates_plane import UnstableError
 
 PARTS = (Part(0, 12, 1), Part(0, 12, 1), Part(1, 12, -1))
@@ -168,6 +169,24 @@ class TestRefineEachPart:
             assert found.value[0, 0] == pytest.approx(1e-4)
         with pytest.raises(UnstableError, match="too coarse"):
             refine_each_part((Part(1, 5, 1),), solve, lambda found: True, 1e-2)
+
+    @pytest.mark.parametrize(
+        "failure",
+        [np.linalg.LinAlgError("not of full rank"), MemoryError(), ToleranceError("the factors")],
+    )
+    def test_what_is_known_outlives_a_grid_that_fails(self, failure):
+        """A first comparison has a value and an error; without it there is none."""
+
+        def solve(at):
+            if at[0] == 4:
+                raise failure
+            return np.array([[2.0 ** -at[0]], [0.0]])
+
+        found = refine_each_part((Part(2, 9, 1),), solve, lambda found: False, 1e-2)
+        assert found.value[0, 0] == pytest.approx(2.0**-3)
+        assert found.change[0, 0] >= 2.0**-3
+        with pytest.raises(ToleranceError, match=r"full rank|memory|factors"):
+            refine_each_part((Part(3, 9, 1),), solve, lambda found: False, 1e-2)
 
     @pytest.mark.parametrize(("rate", "asked"), [(0.9, 3), (0.5, 5)])
     def test_ends_without_hope(self, rate, asked):
