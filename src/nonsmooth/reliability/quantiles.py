@@ -82,10 +82,11 @@ def crossing_threshold(
     xarray.Dataset
         Over `probability` and `horizon`, with the method among its attributes: `threshold`, b,
         "1"; its error `threshold_error`; `lower` and `upper`, between which it is. They invert the
-        limits of W: at `lower` W is surely at least P, and at `upper` surely at most P. As for W,
-        they are 95 % confidence limits by Monte Carlo, and the error is then that of W over its
-        slope; otherwise it is the distance to the farther limit. A limit is 0 or inf where the
-        error of W leaves it open.
+        limits of W: at `lower` W is at least P, and at `upper` at most P. By Monte Carlo they are
+        95 % confidence limits, as for W, and the error is that of W over its slope. Otherwise they
+        are told by the limits of W near by and its slope, or computed where errors hide the slope;
+        the error is the distance to the farther limit. A limit is 0 or inf where the error of W
+        leaves it open.
 
     Raises
     ------
@@ -105,9 +106,9 @@ def crossing_threshold(
     def guess(P, T):
         equal = np.exp(equivalent(brownian, P, FALLING))
         level, slope = typical_reach(scene, p * T, equal, seed, threads)
-        if level < SMALLEST:
+        if level == 0:
             raise SceneError(
-                f"probability is {P:g}, but up to T = {T:g} it is about as likely or likelier that "
+                f"probability is {P!r}, but up to T = {T:g} it is about as likely or likelier that "
                 f"int g stays 0, where g = {quoted(scene.observable)}; choose a smaller one"
             )
         return level / np.sqrt(p), slope

@@ -36,7 +36,7 @@ def typical_reach(
     Returns
     -------
     level : float
-        Positive.
+        0 if int g stays 0 so often.
     slope : float
         Of the logarithm of the level of Brownian motion over that of the level.
     """
@@ -57,7 +57,9 @@ def typical_reach(
     slope = 1.0
     if 0 < near < far:
         slope = float(np.clip(np.diff(levels)[0] / np.log(far / near), *scale.slopes))
-    far = max(far, np.finfo(float).tiny) * np.exp((np.log(brownian) - levels[1]) / slope)
+    change = np.log(brownian) - levels[1]
+    # towards 0 the slope is that of large levels no longer: the level may not be near by far
+    far *= np.exp(change / (slope if change > 0 else max(slope, 1.0)))
     return float(far * np.sqrt(time / simulated)), slope
 
 
@@ -85,16 +87,20 @@ def typical_time(
     power : float
         Of the time, with which the reach grows.
     """
-    scale, time, before, power = tuning.SCALE, np.log(start), None, tuning.SCALE.powers[0]
+    scale, time, points = tuning.SCALE, np.log(start), []
+    power = scale.powers[0]
     for _ in range(scale.attempts):
-        gap = np.log(level / reach(np.exp(time)))
+        gap = np.log(level / max(reach(np.exp(time)), np.finfo(float).tiny))
+        points.append((gap, time))
+        near = abs(gap) < np.log(scale.near)
         # late, int g spreads like the root of the time; early, like a power up to 3/2
-        power = scale.powers[int(gap < 0)]
-        if before is not None:
-            found = (before[1] - gap) / (time - before[0])
+        if len(points) > 1:
+            found = (points[-2][0] - gap) / (time - points[-2][1])
             power = float(np.clip(found, *scale.powers))
-        before = time, gap
-        time += gap / power
-        if abs(gap) < np.log(scale.near):
-            break
-    return float(np.exp(time)), power
+        elif not near:
+            power = scale.powers[int(gap < 0)]
+        farthest = np.log(scale.farthest)
+        time += np.clip(gap / power, -farthest, farthest)
+        if near:
+            return float(np.exp(time)), power
+    return float(np.exp(min(points, key=lambda point: abs(point[0]))[1])), power

@@ -1,8 +1,9 @@
 """Where a crossing probability W takes a value P, with limits from the limits of W.
 
 W is monotone in the threshold and in the time. So if its upper limit at x is below P, or its lower
-limit above P, then x is on a known side of the root. Limits of the root are such x; they hold
-whenever those of W hold there.
+limit above P, then x is on a known side of the root. Limits of the root are such x. Where the slope
+is known well, they are not computed, but follow from the limits of W near by, under the assumption
+that the slope changes by no more than is usual (`tuning.SEARCH.bend`).
 """
 
 from collections.abc import Callable
@@ -100,7 +101,7 @@ def solved_root(
             break
         left, right = (left, x) if points[-1].gap > 0 else (x, right)
         x *= np.exp(_step(points, slope))
-        if not left < x < right:
+        if not left < x < right and left > 0 and right < np.inf:
             x = np.sqrt(left * right)
     return _by_doubling(evaluate, target, sense, base, slope)
 
@@ -140,6 +141,11 @@ class _Point(NamedTuple):
     low: float
     high: float
 
+    @property
+    def error(self) -> float:
+        """The larger distance to a limit."""
+        return max(self.high - self.gap, self.gap - self.low)
+
 
 def _point(place, values, reference, sense, wanted):
     parts = (values.probability[0], values.lower[0], values.upper[0])
@@ -157,10 +163,10 @@ def _slope(points, base, guess):
         rise, run = two.gap - one.gap, two.place - one.place
         if run == 0 or not 0 < rise / run < np.inf:
             continue
-        errors = (one.high - one.low + two.high - two.low) / 2
+        errors = one.error + two.error
         farthest = max(abs(point.place - base.place) for point in (one, two))
         doubt = errors / abs(rise) + tuning.SEARCH.bend * farthest
-        if doubt < best[1] or np.isinf(best[1]):
+        if doubt < min(best[1], tuning.SEARCH.told):
             best = rise / run, doubt
     return best
 
@@ -172,7 +178,7 @@ def _by_slope(base, slope, doubt):
     if not np.all(np.isfinite(ways)):
         return None
     doubts = doubt + search.bend * np.abs(ways)
-    vague = abs(base.gap) * doubt > search.vague * (base.high - base.low) / 2 + search.rounding
+    vague = abs(base.gap) * doubt > search.vague * base.error + search.rounding
     if vague or doubts.max() > search.doubt:
         return None
     way, first, last = ways
@@ -183,13 +189,13 @@ def _by_slope(base, slope, doubt):
 
 
 def _step(points, slope):
-    """Return the next change of log x; the first is wide enough to tell the slope."""
+    """Return the next change of log x; the first tells the slope, if it need not be too wide."""
     search, last = tuning.SEARCH, points[-1]
-    gap, width = last.gap, (last.high - last.low) / 2
-    if np.isinf(width) and last.low * last.high > 0:  # beyond the root, and far as it may be
+    gap, wide = last.gap, search.wide * last.error + search.rounding
+    if np.isinf(wide) and last.low * last.high > 0:  # beyond the root, and far as it may be
         gap = np.copysign(np.inf, gap)
-    elif len(points) == 1 and np.isfinite(width):
-        gap = np.copysign(max(abs(gap), search.wide * width), gap)
+    elif len(points) == 1 and wide < slope * search.doubt / (2 * search.bend):
+        gap = np.copysign(max(abs(gap), wide), gap)
     reach = np.log(search.farthest)
     return np.clip(-gap / slope, -reach, reach)
 

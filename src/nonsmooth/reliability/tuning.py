@@ -15,7 +15,8 @@ class Scale:
     attempts: int = 8
     near: float = 1.1
     powers: tuple[float, float] = (0.5, 1.5)
-    # chosen: of the level of Brownian motion, as a power of the level; larger than has been seen
+    farthest: float = 1e6  # chosen: largest factor of one attempt
+    # chosen: of the level of Brownian motion, as a power of the level; 0.3 to 3 were seen
     slopes: tuple[float, float] = (0.2, 5.0)
     counted: float = 20.0  # chosen: paths beyond the outermost quantile that is read off
 
@@ -35,9 +36,10 @@ class Search:
     bend: float = 2.0
     doubt: float = 0.3
     vague: float = 1.0
+    told: float = 1.0  # chosen: doubt from which on a guess of the slope is better
     wide: float = 10.0  # chosen: first step over the error, so that the slope is seen
     rounding: float = 1e-12  # derived: relative distance of roots that rounding cannot tell apart
-    most: int = 30  # chosen: a bisection from a factor of 2 has 1e-9 then
+    most: int = 30  # chosen: a bisection from a factor of 10 has 1e-8 then
     margin: float = 1.2  # chosen: of the first limits, over what the slope at the root tells
     widest: float = 100.0  # chosen: factor from the root to a limit, beyond which there is none
 

@@ -91,6 +91,16 @@ def test_bad_requests_are_refused(ask, cure):
         ask()
 
 
+def test_one_sided_thresholds_that_are_hardly_ever_missed():
+    """They are far smaller than those of both sides, down to the formula's own error."""
+    asked = {"p": 1e4, "sides": "upper", "method": "corrected", "order": 3}
+    for P in (0.9, 0.99):
+        found = ns.crossing_threshold(FRICTION, P, 1.0, **asked).squeeze()
+        level = (-np.inf, float(found["threshold"]))
+        W = ns.crossing_probability(FRICTION, level, [1.0], 1e4, "corrected", order=3).squeeze()
+        assert abs(W["probability"] - P) <= 1e-9 + W["probability_error"]
+
+
 def test_a_tolerance_out_of_reach_is_refused_with_the_best_root():
     """The corrected formula has an error of its own; the result has the limits it leaves."""
     asked = {"method": "corrected", "order": 3, "tol": 1e-6}

@@ -81,6 +81,15 @@ def test_few_values_suffice(warp, most, relative, sense):
 
 
 @pytest.mark.parametrize("sense", [RISING, FALLING])
+def test_a_guess_that_is_the_root(sense):
+    """Without any error, at the first value: there is nothing to look for."""
+    target = REFERENCE[sense](1.0)
+    root = solved_root(brownian(0.0, 0.0, sense), REFERENCE[sense], target, (1.0, 1.0), sense)
+    assert root.value == pytest.approx(1.0, rel=1e-11)
+    assert root.error < 1e-10
+
+
+@pytest.mark.parametrize("sense", [RISING, FALLING])
 def test_a_limit_stays_open_where_the_error_leaves_it_open(sense):
     """An error of 0.3 around P = 0.1: W may be as small as it likes."""
     root = solved_root(brownian(0.3, 0.0, sense), REFERENCE[sense], 0.1, (1.0, 1.0), sense)

@@ -68,7 +68,7 @@ def refine_each_part(
     UnstableError
         If the first one is, and the next one, too.
     ToleranceError
-        If the first one is refused, or its equations are not `solvable`.
+        If the first one, or one that it is compared with, is refused or not `solvable`.
     """
     with counter("solutions") as advance:
 
