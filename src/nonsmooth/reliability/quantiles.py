@@ -375,8 +375,8 @@ def _inverted(curves, targets, spans, count, sense):
             low, high = spans[k]
             ratio = high / low
             spans[k] = (
-                low if root.lower > 0 else low / ratio,
-                high if root.upper < np.inf else high * ratio,
+                low if root.lower > 0 else max(low / ratio, SMALLEST),
+                high if root.upper < np.inf else min(high * ratio, LARGEST),
             )
     raise ToleranceError(
         "Monte Carlo does not bracket the probability asked for; choose a smaller tol, or one that "

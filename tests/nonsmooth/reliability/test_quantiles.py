@@ -101,6 +101,13 @@ def test_one_sided_thresholds_that_are_hardly_ever_missed():
         assert abs(W["probability"] - P) <= 1e-9 + W["probability_error"]
 
 
+def test_what_sampling_cannot_bracket_is_refused():
+    """W is 0.82 at 1e-3, and hardly depends on the level: what has 0.99 is smaller than a step."""
+    asked = {"sides": "upper", "method": "monte_carlo", "tol": 1e-2}
+    with pytest.raises(ToleranceError, match="does not bracket"):
+        ns.crossing_threshold(FRICTION, 0.99, 1.0, **asked)
+
+
 def test_a_tolerance_out_of_reach_is_refused_with_the_best_root():
     """The corrected formula has an error of its own; the result has the limits it leaves."""
     asked = {"method": "corrected", "order": 3, "tol": 1e-6}
