@@ -92,13 +92,13 @@ def test_bad_requests_are_refused(ask, cure):
 
 
 def test_one_sided_thresholds_that_are_hardly_ever_missed():
-    """They are far smaller than those of both sides, down to the formula's own error."""
+    """At the threshold found, the formula gives the probability asked for, within its error."""
     asked = {"p": 1e4, "sides": "upper", "method": "corrected", "order": 3}
     for P in (0.9, 0.99):
         found = ns.crossing_threshold(FRICTION, P, 1.0, **asked).squeeze()
         level = (-np.inf, float(found["threshold"]))
         W = ns.crossing_probability(FRICTION, level, [1.0], 1e4, "corrected", order=3).squeeze()
-        assert abs(W["probability"] - P) <= 1e-9 + W["probability_error"]
+        assert abs(W["probability"] - P) <= W["probability_error"]
 
 
 def test_what_sampling_cannot_bracket_is_refused():
