@@ -58,6 +58,7 @@ def imported(modules: Iterable[str]) -> list[str]:
     return sorted(map(_file, needed - set(PACKAGES)))
 
 
+@cache
 def _file(module):
     path = Path("src", *module.split("."))
     return str(path / "__init__.py" if (ROOT / path).is_dir() else path.with_suffix(".py"))

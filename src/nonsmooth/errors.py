@@ -7,9 +7,10 @@ the form in which it returns what meets it. Public functions hand both through `
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any, TypeVar
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 Found = TypeVar("Found")
 Answer = TypeVar("Answer")
@@ -82,7 +83,7 @@ def answered(
         If the tolerance was asked for, or nothing is known, or the memory is too small.
     """
     try:
-        with threadpool_limits(limits=1, user_api="blas"):
+        with _threads().limit(limits=1, user_api="blas"):
             return present(solve())
     except MemoryError:
         raise ToleranceError(
@@ -99,6 +100,15 @@ def answered(
         f"{message}; it is returned, because no tol was given", AccuracyWarning, stacklevel=3
     )
     return answer
+
+
+@cache
+def _threads():
+    """Return what sets the number of threads: the search for libraries takes milliseconds."""
+    # it has a library of its own
+    import scipy.linalg  # noqa: F401
+
+    return ThreadpoolController()
 
 
 @contextmanager

@@ -4,16 +4,14 @@ import difflib
 import math
 import re
 import warnings
-from functools import cache
 from pathlib import Path
 
 import numpy as np
-import yaml
 
 from nonsmooth.errors import NonsmoothError, ToleranceError, quoted
 from nonsmooth.paths.absorption.envelope import scales
 from nonsmooth.progress import bar
-from reproduction.configuration.schema import shown, validate
+from reproduction.configuration.schema import read_schema, shown, validate
 from reproduction.errors import ConfigError, dotted
 from studies.answers import arguments, meanings, rehearse
 from studies.questions import QUESTIONS, TIME
@@ -39,7 +37,7 @@ def require_sound(study: Study) -> None:
     ConfigError
         One line with the key, its value and the cure; the caller puts the file before it.
     """
-    validate(study.content, _schema())
+    validate(study.content, read_schema(SCHEMA))
     if "scenes" in study.content and study.axes:
         raise ConfigError("'scenes' and 'sweep' are both given; delete one of the two")
     if not {"scenes", "sweep", "base"} & study.content.keys():
@@ -103,9 +101,10 @@ def _check_question(name, question):
 
 def _check_scene(study, name, parameters):
     """Compare the keys of a scene with the schema of its kind."""
+    definitions = read_schema(SCHEMA)["$defs"]
     kind = "system" if is_structure(parameters) else "scene"
     try:
-        validate(parameters, _schema()["$defs"][kind] | {"$defs": _schema()["$defs"]})
+        validate(parameters, definitions[kind] | {"$defs": definitions})
     except ConfigError as error:
         raise _located(study, name, error) from None
 
@@ -181,8 +180,3 @@ def _located(study, name, error, parameters=None):
             key = (*key, parameter)
             break
     return ConfigError(f"{dotted(key)}: {error}", key=key)
-
-
-@cache
-def _schema():
-    return yaml.safe_load(SCHEMA.read_text(encoding="utf-8"))

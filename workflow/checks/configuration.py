@@ -1,12 +1,9 @@
 """The whole configuration: what cannot run is refused in one line before anything runs."""
 
-from functools import cache
 from pathlib import Path
 
-import yaml
-
 from reproduction.configuration.layers import Layers
-from reproduction.configuration.schema import validate
+from reproduction.configuration.schema import read_schema, validate
 from reproduction.errors import ConfigError
 from workflow.checks.outputs import check_outputs
 
@@ -27,7 +24,7 @@ def check(layers: Layers) -> None:
     """
     config = layers.merged
     try:
-        validate(config, _schema())
+        validate(config, read_schema(SCHEMA))
         check_outputs(config["outputs"])
         # sympy takes a second, which most answers need not wait for
         from workflow.checks.meaning import check_meaning
@@ -35,8 +32,3 @@ def check(layers: Layers) -> None:
         check_meaning(config)
     except ConfigError as error:
         raise layers.named(error) from None
-
-
-@cache
-def _schema():
-    return yaml.safe_load(SCHEMA.read_text(encoding="utf-8"))
