@@ -1,8 +1,8 @@
-"""Grids of two variables that are refined in both, until two levels agree.
+"""Grids of two variables that are refined in both, until three levels agree.
 
 A grid of level 0 has an error of about 1e-3, and each level gains a digit or two. For most requests
-two or three such grids suffice. To find out how fine each variable must be, as the combination
-technique does, would take more and larger ones.
+three such grids suffice. To find out how fine each variable must be, as the combination technique
+does, would take more and larger ones.
 """
 
 import math
@@ -30,10 +30,11 @@ class _Solved:
 
 @dataclass(frozen=True)
 class _Error:
-    """The error of values, and whether the levels converge fast enough to go on."""
+    """The error of values, whether levels agree, and whether there is no hope that finer ones do."""
 
     bound: np.ndarray
-    converging: bool
+    agreed: bool
+    hopeless: bool
 
 
 def applies(scene: Scene) -> bool:
@@ -42,7 +43,7 @@ def applies(scene: Scene) -> bool:
 
 
 def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
-    """Raise the level of a grid until two levels agree.
+    """Raise the level of a grid until three levels agree.
 
     Parameters
     ----------
@@ -60,10 +61,11 @@ def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
         The error is the sum of three parts: twice the difference of the last two levels, twice
         what a larger box changes on one of the levels, and twice the error that is not due to the
         grid. Errors may change their sign between levels, so that two levels agree by chance.
-        Therefore the difference is taken to be at least that of the two levels before, divided by
-        the largest factor that a level gains. The refinement ends without success if the tolerance
-        is out of reach, or if a level changes the values by more than half of what the one before
-        did.
+        Therefore the first two are not enough, and the difference is taken to be at least that of
+        the two levels before, divided by the largest factor that a level gains; or not divided, if
+        the level changes the values by more than half of what the one before did. The refinement
+        ends without success if the tolerance is out of reach, or if the third difference or a later
+        one is that large.
     """
     chosen = tuning.UNIFORM_REFINEMENT
 
@@ -83,24 +85,27 @@ def refined(grid: Grid, solve: Callable, share: Callable) -> Refined:
         last = found[-1]
         changes = _changes([level.values for level in found])
         size = share(changes[-1], last.values)
-        larger = share(changes[-2], found[-2].values) if len(changes) > 1 else math.inf
+        falling = len(changes) < 2 or size <= share(changes[-2], found[-2].values) / 2
         reach = chosen.gain ** (chosen.highest - last.level) / chosen.safety
-        bound = chosen.safety * changes[-1] + 2 * last.inexact
-        converging = bool(size <= min(larger / 2, reach))
-        if converging and share(bound, last.values) <= 1:
+        change = changes[-1] if falling else np.maximum(*changes[-2:])
+        bound = chosen.safety * change + 2 * last.inexact
+        agreed = len(changes) > 1 and share(bound, last.values) <= 1
+        if agreed:
             bound = bound + box.below(
                 min(chosen.boxed, last.level - 1),
                 last.level,
                 lambda effect: share(bound + effect, last.values) <= 1,
             )
-        return _Error(bound, converging)
+            agreed = share(bound, last.values) <= 1
+        hopeless = size > reach or (len(changes) > 2 and not falling)
+        return _Error(bound, bool(agreed), bool(hopeless))
 
     result = until_agreement(
         range(chosen.highest + 1),
         solved,
         error,
-        met=lambda last, error: error.converging and share(error.bound, last.values) <= 1,
-        hopeless=lambda last, error: not error.converging,
+        met=lambda _, error: error.agreed,
+        hopeless=lambda _, error: error.hopeless,
     )
     return Refined(result.value.values, result.error.bound, result.met)
 

@@ -35,27 +35,29 @@ def elasticity(scene: Scene, parameter: str, tol: float) -> tuple[float, float]:
     Returns
     -------
     value, error : float
-        The error is that of `uniform_refinement.refined` or of `combined`. It may be above `tol`.
+        The error is that of `uniform_refinement.refined`, at least that of log gamma^2 there, or
+        that of `combined`. It may be above `tol`.
     """
     if uniform_refinement.applies(scene):
         found = uniform_refinement.refined(
             fitted(scene, depth_for(tol), 1),
-            lambda grid: (elasticity_on(scene, parameter, grid, tol), tuning.GRIDS.rounding),
-            lambda error, value: error / tol,
+            # the derivative may agree on several grids by chance, but hardly gamma^2, too
+            lambda grid: (with_logarithm(scene, parameter, grid, tol), tuning.GRIDS.rounding),
+            lambda error, _: np.max(error) / tol,
         )
         if found.met:
-            return float(found.value), float(found.error)
+            return float(found.value[0]), float(np.max(found.error))
     rest = combined(
         scene,
         tol,
-        lambda scene, grid, accuracy: elasticity_on(scene, parameter, grid, accuracy),
+        lambda scene, grid, accuracy: with_logarithm(scene, parameter, grid, accuracy)[0],
         lambda value, tol: tol,
     )
     return rest.value, rest.error
 
 
-def elasticity_on(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> float:
-    """Compute the elasticity of gamma^2 on one grid.
+def with_logarithm(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> np.ndarray:
+    """Compute the elasticity of gamma^2 on one grid, and log gamma^2.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ def elasticity_on(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> 
 
     Returns
     -------
-    float
+    numpy.ndarray, shape (2,)
     """
     axes, solve = solver(scene, grid)
     generator = assemble(scene, axes, change=change(scene, parameter))
@@ -84,4 +86,6 @@ def elasticity_on(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> 
     own = solve.fold(own)
     v, mean = solve.solve(changed(u, ODD) + own, ODD, accuracy)
     _, slope = solve.solve(changed(h, EVEN) + g * v + (own - mean) * u, EVEN, accuracy)
-    return value_of(scene, parameter) * slope / half if half else np.inf
+    if half == 0:
+        return np.full(2, np.inf)
+    return np.array([value_of(scene, parameter) * slope / half, np.log(2 * abs(half))])

@@ -59,6 +59,20 @@ def test_dry_friction_by_sigma():
     assert abs(by_sigma.value - exact) <= error
 
 
+@pytest.mark.slow
+def test_an_agreement_of_grids_by_chance():
+    """Derivatives on the first two grids differ by 5e-6, and both are off by 1e-4.
+
+    What gamma^2 itself changes shows that grids are coarse.
+    """
+    well = "x**2/2 + 0.3*cos(2*x)"
+    scene = ns.Scene("elasto_plastic", ns.White(1.4), 653.6, 0.7891, well, "x + y")
+    loose, tight = (
+        ns.asymptotic_variance_sensitivity(scene, "damping", tol) for tol in (1e-3, 2e-5)
+    )
+    assert abs(loose.value - tight.value) <= loose.error + tight.error
+
+
 def test_linear_scene():
     """Without friction gamma^2 = (sigma / C_b)^2, exactly."""
     scene = ns.Scene("elasto_plastic", ns.White(0.6), damping=1.7)
