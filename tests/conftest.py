@@ -10,10 +10,18 @@ from support import ROOT, Repository, copy_repository
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Keep what looks at the finished workflow in one process, so that it runs once."""
+    """Keep what looks at the finished workflow in one process, so that it runs once.
+
+    It comes first and what is quick comes last, so that several processes end together.
+    """
     for item in items:
         if "smoke_run" in item.fixturenames:
             item.add_marker(pytest.mark.xdist_group("smoke"))
+    items.sort(key=_turn)
+
+
+def _turn(item):
+    return "smoke_run" not in item.fixturenames, item.get_closest_marker("slow") is None
 
 
 @pytest.fixture

@@ -2,12 +2,11 @@
 
 import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import sympy
 
+import forked_snakemake
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
 from nonsmooth.kinetic.ordinates_plane import boxed, plane_ordinates
 from nonsmooth.kinetic.tuning import GibbsLevel, PlaneLevel
@@ -65,12 +64,10 @@ class Repository:
     def snakemake(self, *arguments):
         """Run snakemake with the smoke configuration; return the finished process."""
         kernels = {"NUMBA_CACHE_DIR": str(ROOT / "src" / "nonsmooth" / "__pycache__")}
-        return subprocess.run(
-            [sys.executable, "-m", "snakemake", "--configfile", "config/smoke.yaml", *arguments],
-            cwd=self.folder,
-            env=os.environ | kernels,  # copies share what they compiled
-            capture_output=True,
-            text=True,
+        return forked_snakemake.run(
+            self.folder,
+            ["--configfile", "config/smoke.yaml", *arguments],
+            os.environ | kernels,  # copies share what they compiled
             timeout=600,  # against a hang; a busy machine takes several times the usual
         )
 

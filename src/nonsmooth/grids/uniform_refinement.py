@@ -30,7 +30,7 @@ class _Solved:
 
 @dataclass(frozen=True)
 class _Error:
-    """The error of values, whether levels agree, and whether there is no hope that finer ones do."""
+    """The error of values, whether levels agree, and whether finer ones have no hope to."""
 
     bound: np.ndarray
     agreed: bool
