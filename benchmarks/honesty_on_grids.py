@@ -1,4 +1,4 @@
-"""Whether the stated errors of kappa, densities and spectral gaps hold for two variables.
+"""Whether the stated errors of what grids of two variables give hold: kappa, densities, and others.
 
 `python -m benchmarks.honesty_on_grids` prints one line per quantity; arguments choose quantities by
 their first words, `--first` the first seed and `--scenes` how many. Each random scene is solved to
@@ -82,12 +82,19 @@ def length(scene, tol):
     return sampled_kappa(scene, threads=1) if tol is None else ns.extrapolation_length(scene, tol)
 
 
+def slope(parameter):
+    """Return a function that asks for the derivative of gamma^2 by a parameter."""
+    return number(lambda scene, tol: ns.asymptotic_variance_sensitivity(scene, parameter, tol))
+
+
 # for each quantity: how it is found, its tolerance, that of the reference, how many scenes
 QUANTITIES = {
     "kappa": (number(ns.extrapolation_length), 3e-3, 3e-4, 40),
     "sampled kappa": (number(length), None, 3e-3, 20),
     "density": (density, 1e-2, 1e-3, 40),
     "spectral gap": (number(ns.spectral_gap), 1e-3, 1e-6, 60),
+    "derivative by damping": (slope("damping"), 1e-3, 2e-5, 60),
+    "derivative by n": (slope("n"), 1e-3, 2e-5, 60),
 }
 
 
