@@ -21,14 +21,14 @@ def test_uniform_refinement_is_honest(n, tol):
     "values",
     [
         pytest.param((1.0, 1.0, 1.3, 1.31, 1.3104), id="the first two levels agree"),
-        pytest.param((0.7, 1.02, 1.02, 1.03, 1.0305), id="the next two agree"),
-        pytest.param((1.01, 1.04, 1.0, 0.999, 0.999), id="differences grow at first"),
+        pytest.param((0.7, 1.02, 1.02, 1.03, 1.032), id="the next two agree"),
+        pytest.param((1.01, 1.04, 0.998, 0.9995, 1.0), id="differences grow at first"),
         pytest.param((1.0, 1.0, 1.0, 1.0, 1.0), id="all agree"),
     ],
 )
 @pytest.mark.parametrize("tol", [0.2, 0.1, 0.03])
 def test_an_agreement_by_chance_is_seen(values, tol):
-    """The last value is the limit; no level gains more than a factor of 30."""
+    """The last value is the limit; before it no level gains more than a factor of 30."""
 
     def solve(grid):
         (level,) = set(grid.levels.values())
