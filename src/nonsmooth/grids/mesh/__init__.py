@@ -7,8 +7,8 @@ there, so that the solution is smooth within each element.
 - `box.half_widths`, `box.narrowed`: how large the box must be.
 - `box_effect.BoxEffect`: what a larger box changes.
 - `edges.kinks`, `edges.potentials`, `edges.element_edges`: where the elements end.
-- `layers.is_held`, `layers.resolves_layer`, `layers.layered_edges`: the same for densities that are
-  concentrated along a line.
+- `layers.is_held`, `layers.resolves_layer`, `layers.misses_layer`, `layers.layered_edges`: the same
+  for densities that are concentrated along a line.
 - `hermite.hermite`: polynomials of a normal variable, in the place of elements.
 - `axes.variables`, `axes.axes`: nodes, weights and derivatives on these elements.
 """

@@ -6,6 +6,7 @@ Elements that crowd towards a kink miss most of it; here they are as wide as som
 """
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from sympy import Symbol
@@ -14,13 +15,14 @@ from nonsmooth.grids import tuning
 from nonsmooth.grids.grading import distinct, geometric, growing, layers, mirrored
 from nonsmooth.grids.mesh.edges import kinks
 from nonsmooth.scenes.scene import Scene
+from nonsmooth.scenes.symbols import eta, y
 
 
 def is_held(scene: Scene) -> bool:
-    """Whether a stiff force holds the variable of a state of two that noise does not drive."""
+    """Whether a stiff force holds a variable of the state that noise does not drive."""
     model, held = scene.mechanics, scene.mechanics.argument
     transported = held.name in scene.state and held != scene.noise.driven
-    return scene.dimension == 2 and transported and not model.in_potential
+    return transported and not model.in_potential
 
 
 def resolves_layer(scene: Scene, end: float) -> bool:
@@ -37,7 +39,39 @@ def resolves_layer(scene: Scene, end: float) -> bool:
     -------
     bool
     """
-    return is_held(scene) and end <= tuning.LAYERS.most * _finest(scene, 0)[0]
+    if scene.dimension > 2 or not is_held(scene):
+        return False
+    return end <= tuning.LAYERS.most * _finest(scene, 0)[0]
+
+
+def misses_layer(scene: Scene, ends: Mapping[Symbol, float], edges: np.ndarray) -> bool:
+    """Whether elements of the variable that is held are too wide for its layer.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    ends : dict
+        Half widths of the box.
+    edges : numpy.ndarray
+        Of the elements of this variable.
+
+    Returns
+    -------
+    bool
+        Whether an element next to the kink is wider than those that resolve the layer. What the
+        variable follows is driven by noise, or changes by its half width in a unit of time.
+    """
+    held = scene.mechanics.argument
+    if not is_held(scene) or kinks(scene)[held] >= ends[held]:
+        return False
+    followed = eta if scene.mechanics.is_friction and eta in ends else y
+    if followed == scene.noise.driven:
+        width = _finest(scene, 0)[1]
+    else:
+        width = tuning.LAYERS.width * ends[followed] / _stiffness(scene) ** 2
+    place = int(np.argmin(np.abs(edges - kinks(scene)[held])))
+    return bool(np.max(np.diff(edges[place - 1 : place + 2])) > width)
 
 
 def layered_edges(scene: Scene, symbol: Symbol, end: float, level: int) -> np.ndarray:
@@ -78,12 +112,16 @@ def layered_edges(scene: Scene, symbol: Symbol, end: float, level: int) -> np.nd
 
 def _finest(scene, level):
     """Return the width of the elements of the driven variable, and of those within the layer."""
-    chosen = tuning.LAYERS
-    _, inner, outer = scene.mechanics.penalty.at(scene.n)
-    rate = max(inner, outer) + (scene.damping if scene.mechanics.is_friction else 0.0)
+    chosen, rate = tuning.LAYERS, _stiffness(scene)
     lag = scene.noise.sigma / math.sqrt(2 * rate)  # its standard deviation
     width = lag * chosen.width / (1 + level * chosen.narrower)
     return width, width / rate
+
+
+def _stiffness(scene):
+    """Return the rate at which the variable that is held follows."""
+    _, inner, outer = scene.mechanics.penalty.at(scene.n)
+    return max(inner, outer) + (scene.damping if scene.mechanics.is_friction else 0.0)
 
 
 def _about_kink(scene, kink, end, narrow, widest, level):

@@ -4,7 +4,7 @@ The masses of the discretised invariant measure at the nodes are divided by the 
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
 
@@ -15,7 +15,8 @@ from nonsmooth.errors import ToleranceError, answered
 from nonsmooth.estimate import not_negative
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids import tuning as grid_tuning
-from nonsmooth.grids.mesh.layers import is_held, resolves_layer
+from nonsmooth.grids.mesh.axes import axes as axes_of
+from nonsmooth.grids.mesh.layers import is_held, misses_layer, resolves_layer
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.refine import further_terms, until_agreement
 from nonsmooth.scenes.scene import Scene
@@ -64,30 +65,42 @@ def solved_densities(
     """
     accuracy = tol * tuning.INVARIANT_DENSITY.residual
     held = scene.mechanics.argument.name
-    hidden = is_held(scene) and not _has_layers(scene, grid)
+    missed = [key for key in keys(scene) if held in key and _misses_layer(scene, grid)]
 
     def present(refined):
         found = {}
         for key, both in refined.items():
             value, error = not_negative(*both)
-            # grids that miss a layer may agree on anything
-            known = math.inf if hidden and held in key else float(np.max(error))
-            found[key] = Density(value, known + outside(value, tol))
+            found[key] = Density(value, float(np.max(error)) + outside(value, tol))
         return found
 
     found = answered(
         lambda: refined(
-            scene, grid, tol, lambda grid: densities_on(scene, grid, points, accuracy), quick, True
+            scene,
+            grid,
+            tol,
+            lambda grid: densities_on(scene, grid, points, accuracy),
+            quick,
+            at_points=True,
+            missed=missed,
         ),
         present,
     )
-    if hidden:
+    if missed:
         raise ToleranceError(
             f"the invariant density has layers for which {held} needs too many elements; choose a "
             "smaller n or method='monte_carlo'",
             found,
         )
     return found
+
+
+def _misses_layer(scene, grid):
+    """Whether no finer grid resolves the layer of a density: only degrees are raised."""
+    if scene.dimension < 3:
+        return is_held(scene) and not _has_layers(scene, grid)
+    held = axes_of(scene, grid.ends, grid.levels, of_density=True)[scene.mechanics.argument]
+    return misses_layer(scene, grid.ends, held.edges)
 
 
 def _has_layers(scene, grid):
@@ -107,6 +120,7 @@ def refined(
     solve: Callable[[Grid], dict],
     quick: bool = False,
     at_points: bool = False,
+    missed: Collection = (),
 ) -> dict:
     """Refine a grid until two levels agree.
 
@@ -123,6 +137,9 @@ def refined(
         Whether to end with grids that take some seconds.
     at_points : bool
         Whether the values are densities at points, which converge more slowly than averages.
+    missed : collection
+        Keys of arrays that no grid resolves. On anything about them grids may agree, so that their
+        errors are infinite, and refinement ends without them.
 
     Returns
     -------
@@ -141,18 +158,20 @@ def refined(
         If `tol` is not met; what the last grid gives is its `result`.
     """
     chosen, many = tuning.INVARIANT_DENSITY, at_points and scene.dimension > 2
-    missed = many and not scene.mechanics.in_potential
+    stiff = many and not scene.mechanics.in_potential
     layered = chosen.layered_safety if _has_layers(scene, grid) else 1.0
-    safety = chosen.unresolved_safety if missed else layered
+    safety = chosen.unresolved_safety if stiff else layered
     first = chosen.unresolved_safety if many else safety
 
     def difference(found):
         least = safety if len(found) > 2 else first
-        return {key: _left([level[key] for level in found], least, at_points) for key in found[0]}
+        left = {key: _left([level[key] for level in found], least, at_points) for key in found[0]}
+        return left | {key: np.full_like(left[key], math.inf) for key in missed}
 
     def relative(values, difference):
         least = np.finfo(float).tiny
-        return max(np.max(difference[key]) / max(np.max(values[key]), least) for key in values)
+        known = [key for key in values if key not in missed]
+        return max(np.max(difference[key]) / max(np.max(values[key]), least) for key in known)
 
     result = until_agreement(
         _affordable(scene, grid, quick),

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
+from nonsmooth.grids.mesh.axes import axes
 from nonsmooth.grids.mesh.edges import kinks
-from nonsmooth.grids.mesh.layers import layered_edges, resolves_layer
+from nonsmooth.grids.mesh.layers import layered_edges, misses_layer, resolves_layer
 from nonsmooth.scenes.symbols import eta, x, y
 
 YIELDING = ns.Scene("elasto_plastic", n=100, potential="x**2/2")
@@ -55,3 +56,27 @@ def test_few_scenes_have_layers_that_can_be_resolved():
         ns.Scene("elasto_plastic", "langevin", n=100, potential="x**2/2"),
     ):
         assert not resolves_layer(other, 4.4)
+
+
+def _misses(scene):
+    """Whether the elements of three variables that are used for densities miss the layer."""
+    ends = {eta: 3.8, y: 2.2, x: 1 + 2.2 / scene.n} if scene.mechanics.argument == x else {}
+    ends = ends or {eta: 3.8, y: 4.2, x: 12.0}
+    made = axes(scene, ends, dict.fromkeys(ends, 1), of_density=True)
+    return misses_layer(scene, ends, made[scene.mechanics.argument].edges)
+
+
+@pytest.mark.parametrize("model", ["elasto_plastic", "friction"])
+def test_many_variables_miss_the_layers_of_stiff_forces(model):
+    """A lag over the stiffness is a width that few elements have; soft forces need no thin one."""
+    scene = ns.Scene(model, "langevin", n=2, potential="x**2/2")
+    assert not _misses(scene)
+    assert _misses(scene.with_n(100))
+    # the elements' widths are proportional to 1/n, those of layers to a higher power of it
+    missed = [_misses(scene.with_n(n)) for n in (1, 2, 5, 10, 20, 50, 100, 1000)]
+    assert missed == sorted(missed)
+
+
+def test_walls_have_no_layer():
+    """An elastic wall throws the oscillator back: nothing follows anything."""
+    assert not _misses(ns.Scene("obstacle", "langevin", n=100, potential="x**2/2"))

@@ -1,5 +1,7 @@
 """Densities on grids: the exact marginal of the noise on fine grids, and layers."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -51,3 +53,21 @@ def test_layers_are_resolved(scene):
         gap = float(np.max(np.abs(loose[name] - tight[name])))
         assert gap <= float(loose[f"{name}_error"] + tight[f"{name}_error"])
         assert float(tight[f"{name}_error"]) <= 1e-3 * float(tight[name].max())
+
+
+@pytest.mark.slow
+def test_grids_that_miss_a_layer_do_not_answer():
+    """In cells next to the kink the density is what paths have there; the others are solved for."""
+    scene = ns.Scene("elasto_plastic", "langevin", n=100, potential="x**2/2")
+    points = {"eta": np.linspace(-3, 3, 41), "y": np.linspace(-2, 2, 41)}
+    points["x"] = 1 + np.arange(-3, 4) * 1e-3
+    with pytest.raises(ToleranceError, match="layers for which x needs") as refused:
+        ns.invariant_density(scene, 0.2, points, "deterministic")
+    solved = refused.value.result
+    assert math.isinf(solved.density_x_error)
+    assert math.isinf(solved.density_y_x_error)
+    assert float(solved.density_y_error) <= 0.2 * float(solved.density_y.max())
+    answer = ns.invariant_density(scene, 0.2, points)
+    assert answer.density_x.attrs["cell_methods"] == "x: mean"
+    assert "cell_methods" not in answer.density_y.attrs
+    assert float(answer.density_x_error) <= 0.2 * float(answer.density_x.max())
