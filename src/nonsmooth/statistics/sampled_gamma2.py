@@ -259,13 +259,25 @@ def first_times(scene: Scene) -> tuple[float, ...]:
     """Choose the times between which the slope is first taken.
 
     They are longer if the drift relaxes slowly: the first is at least two relaxation times.
+
+    Raises
+    ------
+    ToleranceError
+        If paths cannot wait for so long.
     """
     settled = tuning.SAMPLED_GAMMA2
     try:
-        rate = rate_at_infinity(scene.with_n(min(scene.n, settled.soft))).value / 2
+        decay = rate_at_infinity(scene.with_n(min(scene.n, settled.soft)))
     except SceneError:  # The drift is not linear far from 0. `_settled` has to find the times.
         return settled.times
-    first = settled.times[0]
+    if decay.value <= 0:  # as in a potential |x|, whose force does not grow
+        return settled.times
+    rate, first = decay.value / 2, settled.times[0]
+    if settled.relaxed / rate > settled.longest:
+        raise ToleranceError(
+            f"the drift relaxes in a time of {1 / rate:.2g}, for which paths cannot wait; choose "
+            "parameters of more similar sizes"
+        )
     return tuple(max(1.0, settled.relaxed / (rate * first)) * t for t in settled.times)
 
 

@@ -100,6 +100,7 @@ class SampledDensity:
     blocks: int = 32  # chosen: of 1000 paths; so many are enough to tell their spread
     longest_time: float = 1600.0  # chosen: of the last attempt, half a minute
     most_steps: float = 8e4  # chosen: the same in steps, where they must be short
+    hopeless: float = 1e6  # chosen: steps of the first attempt that are too many, minutes
     stable: float = 0.9  # chosen: part of the longest stable step for the coarser of the two
     relaxed: float = 2.5  # chosen: so many first times of gamma^2 until a start is forgotten
     attempts: int = 4  # chosen: with steps that become shorter where their bias is large
@@ -179,6 +180,7 @@ class SampledGamma2:
     times: tuple[float, ...] = (10.0, 60.0, 110.0)
     # chosen: the first of them is at least so many relaxation times of the drift far from 0
     relaxed: float = 2.0
+    longest: float = 1e4  # chosen: the first of them at most, minutes with short steps
     # chosen: that relaxation time is computed with an n of at most this
     soft: float = 1e3
     # chosen: how many times are tried, each twice the one before: up to 64 times those above

@@ -5,7 +5,7 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2
+from nonsmooth.statistics.sampled_gamma2 import first_times, sampled_gamma2
 
 
 @pytest.mark.parametrize("n", [100.0, np.inf])
@@ -42,3 +42,15 @@ def test_what_has_no_answer_is_refused():
         sampled_gamma2(ns.Scene("obstacle", potential="x**2/2", observable="y"), 0.1)
     with pytest.raises(ToleranceError, match="use tol >="):
         ns.asymptotic_variance(ns.Scene("obstacle", observable="x"), 1e-5, method="monte_carlo")
+
+
+def test_times_follow_the_drift_far_out():
+    """They are longer where it relaxes slowly; where its force does not grow they are as usual."""
+    usual = first_times(ns.Scene("friction", n=2, potential="x**2/2"))
+    with pytest.warns(UserWarning, match="HU2"):
+        weak = ns.Scene("friction", n=2, potential="abs(x)")
+    assert first_times(weak) == usual
+    slow = first_times(ns.Scene("friction", n=2, damping=100, potential="x**2/2"))
+    assert slow[0] > 10 * usual[0]
+    with pytest.raises(ToleranceError, match="relaxes in a time of"):
+        first_times(ns.Scene("friction", n=2, damping=1e6, potential="x**2/2"))

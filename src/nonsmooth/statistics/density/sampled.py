@@ -64,7 +64,8 @@ def sampled_densities(
     SceneError
         If the points do not increase.
     ToleranceError
-        If `tol` is not met; the last densities are its `result`.
+        If `tol` is not met; the last densities are its `result`. Without one if paths take too many
+        steps to forget their start.
     """
     if not are_cells(points):
         raise SceneError(
@@ -80,6 +81,11 @@ def sampled_densities(
         )
     step = min(short_step(scene), chosen.stable * registry.longest_step(scene) / chosen.coarser)
     time = chosen.relaxed * first_times(scene)[0] / chosen.dropped
+    if time > chosen.hopeless * step:
+        raise ToleranceError(
+            f"densities by Monte Carlo need a time of {time:.2g}, until paths have forgotten their "
+            f"start, in steps of {step:.1g}: too many; choose parameters of more similar sizes"
+        )
     longest = max(min(chosen.longest_time, chosen.most_steps * step), time)
     found: Found = {}
     for attempt in range(chosen.attempts):

@@ -165,3 +165,11 @@ def test_layers_that_no_grid_resolves_are_sampled():
     }
     for key in ("y", "x", "y_x"):
         assert float(found[f"density_{key}_error"]) <= 0.05 * float(found[f"density_{key}"].max())
+
+
+def test_paths_that_never_forget_their_start_are_refused():
+    """Before the first step: it would be one of 1e10."""
+    scene = ns.Scene("friction", n=1e-6, damping=1e6)
+    points = {"y": VELOCITIES}
+    with pytest.raises(ToleranceError, match="until paths have forgotten their start"):
+        ns.invariant_density(scene, 0.1, points, "monte_carlo")
