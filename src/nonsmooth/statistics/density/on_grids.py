@@ -150,7 +150,8 @@ def refined(
         velocity is 0 at the kink; their differences count twice. At points, where differences fall
         slowly, the error is what is left of a geometric series of them; those of three and four
         variables count three times where a stiff force holds one of them, whose layer is thinner
-        than any element, and if there is no other difference to compare with.
+        than any element, and if there is no other difference to compare with. So do averages of the
+        variable that is held.
 
     Raises
     ------
@@ -162,10 +163,19 @@ def refined(
     layered = chosen.layered_safety if _has_layers(scene, grid) else 1.0
     safety = chosen.unresolved_safety if stiff else layered
     first = chosen.unresolved_safety if many else safety
+    held = scene.mechanics.argument.name
+    thin = chosen.unresolved_safety if scene.dimension > 2 and is_held(scene) else 0.0
 
     def difference(found):
         least = safety if len(found) > 2 else first
-        left = {key: _left([level[key] for level in found], least, at_points) for key in found[0]}
+        left = {
+            key: _left(
+                [level[key] for level in found],
+                max(least, thin) if held in key else least,
+                at_points,
+            )
+            for key in found[0]
+        }
         return left | {key: np.full_like(left[key], math.inf) for key in missed}
 
     def relative(values, difference):
