@@ -15,6 +15,7 @@ from nonsmooth.statistics.density.bins import bin_averages
 from nonsmooth.statistics.density.closed_form import closed_form
 from nonsmooth.statistics.density.invariant_density import invariant_density
 from nonsmooth.statistics.density.on_grids import densities_on
+from nonsmooth.statistics.density.sampled import sampled_densities
 from references import FALSE_ALARM, FRICTION, OBSTACLE, PLASTIC
 
 
@@ -113,6 +114,18 @@ def test_loose_averages_are_within_their_errors_in_every_bin(n, damping, sigma, 
     assert np.all(np.abs(loose - tight) <= loose_error + tight_error)
     assert np.all(loose >= 0)
     assert np.max(loose_error) <= 0.1 * np.max(loose) * (1 + 1e-3)
+
+
+@pytest.mark.slow
+def test_loose_averages_of_what_friction_holds_are_within_their_errors():
+    """With three variables no element is as narrow as the layer; two grids are close by chance."""
+    scene = ns.Scene("friction", "langevin", n=10, potential="x**2/2")
+    edges = {"y": 0.1 * np.arange(-5, 9)}
+    loose, error = bin_averages(scene, edges, 1e-1)["y"]
+    middle = (edges["y"][1:] + edges["y"][:-1]) / 2
+    points = {"eta": np.array([-1.0, 1.0]), "y": middle, "x": np.array([-10.0, 10.0])}
+    paths = sampled_densities(scene, 2e-2, points)["y",]
+    assert np.all(np.abs(loose - paths.value) <= error + paths.error)
 
 
 @pytest.mark.slow
