@@ -180,7 +180,7 @@ class SampledGamma2:
     times: tuple[float, ...] = (10.0, 60.0, 110.0)
     # chosen: the first of them is at least so many relaxation times of the drift far from 0
     relaxed: float = 2.0
-    longest: float = 1e4  # chosen: the first of them at most, minutes with short steps
+    longest: float = 3e4  # chosen: the first of them at most; then minutes
     # chosen: that relaxation time is computed with an n of at most this
     soft: float = 1e3
     # chosen: how many times are tried, each twice the one before: up to 64 times those above

@@ -65,7 +65,7 @@ def solved_densities(
     """
     accuracy = tol * tuning.INVARIANT_DENSITY.residual
     held = scene.mechanics.argument.name
-    missed = [key for key in keys(scene) if held in key and _misses_layer(scene, grid)]
+    missed = [key for key in keys(scene) if held in key] if _misses_layer(scene, grid) else []
 
     def present(refined):
         found = {}
