@@ -10,6 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+# chosen: of a vector that is no more than this after it is made orthogonal, rounding is left
+ROUNDING = 1e-12
+
 
 def slow_rates(
     apply: Callable[[np.ndarray], np.ndarray],
@@ -51,7 +54,7 @@ def slow_rates(
     Raises
     ------
     numpy.linalg.LinAlgError
-        If `most` vectors are not enough.
+        If `most` vectors are not enough, or the preconditioner leads to too few.
     """
     space = _Space(len(start), room)
     vector = start
@@ -109,13 +112,15 @@ class _Space:
         self._inverse = np.empty((room, room))
 
     def add(self, vector: np.ndarray, image: np.ndarray) -> None:
-        """Add a vector and its image, made orthogonal to the other images."""
-        k = self.size
+        """Add a vector and its image, made orthogonal to the others; none if nothing is left."""
+        k, whole = self.size, np.linalg.norm(image)
         for _ in range(2):  # once is not enough where little is left
             along = self._images[:k] @ image
             image = image - along @ self._images[:k]
             vector = vector - along @ self._vectors[:k]
         norm = np.linalg.norm(image)
+        if norm <= ROUNDING * whole:
+            return
         self._vectors[k], self._images[k] = vector / norm, image / norm
         self._inverse[: k + 1, k] = self._images[: k + 1] @ self._vectors[k]
         self._inverse[k, :k] = self._vectors[:k] @ self._images[k]
@@ -124,6 +129,8 @@ class _Space:
     def modes(self, wanted: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the largest eigenvalues of the projected inverse, and eigenvectors in columns."""
         k = self.size
+        if k <= wanted:
+            raise np.linalg.LinAlgError(f"the preconditioner leads to no more than {k} independent vectors")
         values, vectors = np.linalg.eig(self._inverse[:k, :k])
         order = np.argsort(-np.abs(values), kind="stable")
         last, following = values[order[wanted - 1 : wanted + 1]]
