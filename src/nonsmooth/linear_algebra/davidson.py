@@ -130,7 +130,9 @@ class _Space:
         """Return the largest eigenvalues of the projected inverse, and eigenvectors in columns."""
         k = self.size
         if k <= wanted:
-            raise np.linalg.LinAlgError(f"the preconditioner leads to no more than {k} independent vectors")
+            raise np.linalg.LinAlgError(
+                f"the preconditioner leads to no more than {k} independent vectors"
+            )
         values, vectors = np.linalg.eig(self._inverse[:k, :k])
         order = np.argsort(-np.abs(values), kind="stable")
         last, following = values[order[wanted - 1 : wanted + 1]]
