@@ -62,7 +62,7 @@ def slow_rates(
         vector = precondition(vector / np.linalg.norm(vector))
         space.add(vector, apply(vector))
     tried = space.size
-    while tried < most:
+    while tried < most and space.size > wanted:
         inverses, modes = space.modes(wanted)
         order = np.argsort((1 / inverses).real, kind="stable")
         residual = _too_large(space, inverses[order], modes[:, order], accuracy, known)
@@ -129,10 +129,6 @@ class _Space:
     def modes(self, wanted: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the largest eigenvalues of the projected inverse, and eigenvectors in columns."""
         k = self.size
-        if k <= wanted:
-            raise np.linalg.LinAlgError(
-                f"the preconditioner leads to no more than {k} independent vectors"
-            )
         values, vectors = np.linalg.eig(self._inverse[:k, :k])
         order = np.argsort(-np.abs(values), kind="stable")
         last, following = values[order[wanted - 1 : wanted + 1]]

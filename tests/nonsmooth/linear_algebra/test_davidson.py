@@ -69,7 +69,6 @@ def test_a_useless_preconditioner_is_noticed():
     """The method ends after the number of vectors that it may try, or if they are all the same."""
     matrix, inverse = operator(4)
     turned = np.linalg.qr(np.random.default_rng(5).normal(size=inverse.shape))[0]
-    with pytest.raises(np.linalg.LinAlgError, match="among 40 vectors"):
-        found(matrix, turned, 1e-9, most=40)
-    with pytest.raises(np.linalg.LinAlgError, match="no more than 1 independent vectors"):
-        found(matrix, np.eye(len(inverse)), 1e-9)
+    for useless in (np.eye(len(inverse)), turned):
+        with pytest.raises(np.linalg.LinAlgError, match="among 40 vectors"):
+            found(matrix, useless, 1e-9, most=40)
