@@ -158,30 +158,27 @@ def refined(
     ToleranceError
         If `tol` is not met; what the last grid gives is its `result`.
     """
-    chosen, many = tuning.INVARIANT_DENSITY, at_points and scene.dimension > 2
-    stiff = many and not scene.mechanics.in_potential
-    layered = chosen.layered_safety if _has_layers(scene, grid) else 1.0
-    safety = chosen.unresolved_safety if stiff else layered
-    first = chosen.unresolved_safety if many else safety
-    held = scene.mechanics.argument.name
-    thin = chosen.unresolved_safety if scene.dimension > 2 and is_held(scene) else 0.0
+    chosen, many = tuning.INVARIANT_DENSITY, scene.dimension > 2
+    held = scene.mechanics.argument.name if many and is_held(scene) else None
+    safety = chosen.layered_safety if _has_layers(scene, grid) else 1.0
+    first = chosen.unresolved_safety if many and at_points else safety
+
+    def least(key, levels):
+        if held and (at_points or held in key):
+            return chosen.unresolved_safety
+        return safety if levels > 2 else first
 
     def difference(found):
-        least = safety if len(found) > 2 else first
         left = {
-            key: _left(
-                [level[key] for level in found],
-                max(least, thin) if held in key else least,
-                at_points,
-            )
+            key: _left([level[key] for level in found], least(key, len(found)), at_points)
             for key in found[0]
         }
         return left | {key: np.full_like(left[key], math.inf) for key in missed}
 
     def relative(values, difference):
-        least = np.finfo(float).tiny
+        tiny = np.finfo(float).tiny
         known = [key for key in values if key not in missed]
-        return max(np.max(difference[key]) / max(np.max(values[key]), least) for key in known)
+        return max(np.max(difference[key]) / max(np.max(values[key]), tiny) for key in known)
 
     result = until_agreement(
         _affordable(scene, grid, quick),
