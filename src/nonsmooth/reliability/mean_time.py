@@ -49,7 +49,8 @@ def mean_time_to_failure(
     method : {"deterministic", "monte_carlo"}, optional
         ``"deterministic"`` takes the transform of the passage time to z -> 0; it is for the scenes
         for which `crossing_probability` has it, with finite thresholds, unless the start is far in
-        the tails, and is chosen for these unless `step` or `paths` is given.
+        the tails, and is chosen for these unless `step` or `paths` is given. Where it misses the
+        tolerance, ``"monte_carlo"`` is tried, too, unless a method is given.
     tol : float, optional
         Relative error wanted; 1e-6 and 1e-3 (deterministic, one and two variables) or 2e-2 (Monte
         Carlo) unless given.
@@ -87,8 +88,10 @@ def mean_time_to_failure(
     solvable = transformed_mean.applies(scene) and not one_sided
     if method is None:
         sampled = not solvable or step is not None or paths is not None
-        method = "monte_carlo" if sampled else "deterministic"
-    elif method == "deterministic" and (one_sided or step is not None or paths is not None):
+        ways = ["monte_carlo"] if sampled else ["deterministic", "monte_carlo"]
+    else:
+        ways = [method]
+    if method == "deterministic" and (one_sided or step is not None or paths is not None):
         raise SceneError(
             "the deterministic mean time takes finite thresholds, no step and no paths; leave them "
             "out or use method='monte_carlo'"
@@ -104,12 +107,21 @@ def mean_time_to_failure(
             found = partial(sampled_mean_time, scene, lower, upper, *given)
         return answered(found, lambda pair: (way, *pair))
 
+    def good_enough(found):
+        """Whether Monte Carlo, which follows the transform, would not be better."""
+        _, value, error = found
+        return tol is None and error <= tuning.SAMPLED_MEAN.tolerance * value
+
     def present(found):
         way, value, error = found
         return Estimate(float(value / p), float(error / p), way, time.perf_counter() - began)
 
     return answered(
-        lambda: first_answer([partial(attempt, method)], error=lambda found: found[2]),
+        lambda: first_answer(
+            [partial(attempt, way) for way in ways],
+            error=lambda found: found[2],
+            good_enough=good_enough,
+        ),
         present,
         tol_given=tol is not None,
     )

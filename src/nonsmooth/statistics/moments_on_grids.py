@@ -13,7 +13,7 @@ Poisson solver and resolves the slowest modes; the others resolve early times.
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -48,22 +48,28 @@ def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np
     Returns
     -------
     moments, errors : numpy.ndarray, shape (2, t)
-        w and v. The errors are those of `uniform_refinement.refined`. Where that fails, they are
-        the change by the last refinement of all variables or, if larger, the sum of the changes by
-        refining each variable alone, plus the errors of the box and of the projection. Errors
-        oscillate with tau. So the stated error, divided by tau, is the largest that any time
-        between tau / 2 and 2 tau has, divided by that time.
+        w and v. The errors are those of `uniform_refinement.refined`. Where that fails, the changes
+        by refining each variable alone are added to the values, and the errors are the sum of their
+        sizes, plus the errors of the box and of the projection. Errors oscillate with tau. So the
+        stated error, divided by tau, is the largest that any time between tau / 2 and 2 tau has,
+        divided by that time.
 
     Raises
     ------
     ToleranceError
-        If no projection is stable: modes grow in all of them.
+        If no projection is finite.
     """
     wanted, times = times, _with_neighbours(times)
     scale = np.where(times > 0, times, 1.0)
 
+    allowed = tuning.MOMENTS_ON_GRIDS.projection * tol * scale
+    known: dict[tuple, tuple[np.ndarray, np.ndarray]] = {}
+
     def solve(grid):
-        return moments_on(scene, grid, times, tuning.MOMENTS_ON_GRIDS.projection * tol * scale)
+        key = (*grid.levels.values(), grid.margin)
+        if key not in known:
+            known[key] = moments_on(scene, grid, times, allowed)
+        return known[key]
 
     def share(error, _values):
         return np.max(error[1] / (tol * scale))
@@ -86,7 +92,7 @@ def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np
     error += tuning.MOMENTS_ON_GRIDS.rounding * np.array([w + np.sqrt(v), v + w**2])
     if not np.all(np.isfinite(error)):
         raise ToleranceError(
-            "v(tau) has no stable projection on the grids of this scene; use simulate, or another n"
+            "v(tau) has no finite projection on the grids of this scene; use simulate, or another n"
         )
     error /= scale
     place = np.searchsorted(times, wanted)
@@ -99,25 +105,48 @@ def _refined(scene, grid, solve, share):
     """Refine the variables that matter, as far as that is affordable; return values and errors.
 
     Which variables are refined next depends on the changes by refining each of them alone. So the
-    grids are not known beforehand, as they are in `refine.until_agreement`.
+    grids are not known beforehand, as they are in `refine.until_agreement`. Where a projection
+    fails, the grid before counts.
     """
-    gain = grid_tuning.UNIFORM_REFINEMENT.gain
-    value, inexact = solve(grid)
+    gain, before = grid_tuning.UNIFORM_REFINEMENT.gain, None
     least = dict.fromkeys(grid.levels, 0.0)
     while True:
+        value, inexact = solve(grid)
         trials = {symbol: solve(grid.raised(symbol)) for symbol in grid.levels}
         changes = {s: np.maximum(np.abs(trials[s][0] - value), least[s]) for s in trials}
+        combined = value + sum(trial - value for trial, _ in trials.values())
+        unsure = inexact + sum(by_trial for _, by_trial in trials.values())
+        found = _Found(grid, combined, sum(changes.values()) + 2 * unsure)
+        if before is not None:
+            ratio = share(found.error, combined) / share(before.error, combined)
+            if not ratio < tuning.MOMENTS_ON_GRIDS.failed:
+                found = before
+                break
         coarse = [s for s in changes if not share(changes[s], value) <= 1 / (2 * len(changes))]
-        finer = grid
-        for symbol in coarse:
-            finer = finer.raised(symbol)
+        finer = _balanced(grid, coarse)
         if not coarse or not _affordable(scene, finer.all_raised()):
             break
-        grid, least = finer, least | {s: changes[s] / gain for s in coarse}
-        value, inexact = trials[coarse[0]] if len(coarse) == 1 else solve(grid)
-    last, inexact = solve(grid.all_raised())
-    beyond = np.abs(solve(grid.enlarged())[0] - value)
-    return last, np.maximum(np.abs(last - value), sum(changes.values())) + 2 * (beyond + inexact)
+        grid, before, least = finer, found, least | {s: changes[s] / gain for s in coarse}
+    # a larger box changes less than a finer grid, which a coarser one tells as well
+    boxed = found.grid.all_raised(-1) if min(found.grid.levels.values()) > 0 else found.grid
+    beyond = np.abs(solve(boxed.enlarged())[0] - solve(boxed)[0])
+    return found.value, found.error + 2 * beyond
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Values to which the changes by refining each variable are added, and their error."""
+
+    grid: Grid
+    value: np.ndarray
+    error: np.ndarray
+
+
+def _balanced(grid, coarse):
+    """Raise variables, and those that are left far behind: such grids have modes that grow."""
+    levels = {symbol: level + (symbol in coarse) for symbol, level in grid.levels.items()}
+    least = max(levels.values()) - tuning.MOMENTS_ON_GRIDS.behind
+    return grid.with_levels(max(level, least) for level in levels.values())
 
 
 def _with_neighbours(times):
@@ -163,7 +192,7 @@ def moments_on(
     Returns
     -------
     moments, changes : numpy.ndarray, shape (2, t)
-        w and v, and their changes by the last Krylov vectors; nan if no projection is stable.
+        w and v, and their changes by the last Krylov vectors.
     """
     axes, solver = tensor_grid.direct_solver(scene, grid)
     g = solver.fold(evaluate(scene.numerical_observable(), axes))
@@ -181,8 +210,6 @@ def moments_on(
     for dimension in tuning.MOMENTS_ON_GRIDS.dimensions:
         krylov.enlarge(dimension, slow, fast)
         value = _evolve(solver, slow, fast, g, (h, u), gamma2, times, at)
-        if value is None:
-            continue
         found, inexact = value, np.abs(value - found)
         if np.all(inexact[1] <= allowed):
             break
@@ -249,19 +276,16 @@ class _Krylov:
 
 
 def _evolve(solver, slow, fast, g, start, gamma2, times, at):
-    """Find w and v from the projected equations of k (`slow`) and r (`fast`).
-
-    Return None if these have solutions that grow.
-    """
+    """Find w and v from the projected equations of k (`slow`) and r (`fast`)."""
     k0, r0 = slow.dot(start[0]), fast.dot(start[1])
     many = len(k0)
     matrix = np.zeros((many + len(r0) + 1,) * 2)
     matrix[:many, :many] = slow.dot(solver.matrix(EVEN) @ slow.rows.T)
     matrix[:many, many:-1] = slow.dot(2 * g[:, None] * fast.rows.T)
     matrix[many:-1, many:-1] = fast.dot(solver.matrix(ODD) @ fast.rows.T)
-    # grids have spurious modes of high frequency that grow; a space that holds one is of no use
-    if _grows(matrix[1:many, 1:many]) or _grows(matrix[many:-1, many:-1]):
-        return None
+    # the first of the slow functions is 1
+    for block in (slice(1, many), slice(many, -1)):
+        matrix[block, block] = _decaying(matrix[block, block])
     # the exponential's last column is the change since the start, without cancellation
     matrix[:-1, -1] = matrix[:-1, :-1] @ np.concatenate([k0, r0])
     changes = np.array([scipy.linalg.expm(tau * matrix)[:-1, -1] for tau in times])
@@ -269,9 +293,18 @@ def _evolve(solver, slow, fast, g, start, gamma2, times, at):
     return np.array([w, gamma2 * times - changes[:, :many] @ at(solver, slow.rows, EVEN) - w**2])
 
 
-def _grows(matrix):
-    fastest = np.max(np.linalg.eigvals(matrix).real, initial=0.0)
-    return fastest > tuning.MOMENTS_ON_GRIDS.growing * np.max(np.abs(matrix))
+def _decaying(matrix):
+    """Make modes decay that grow: the generator has none, but its projection may.
+
+    Such a mode is not that of any grid, it differs from space to space. What is left out with it is
+    seen in the change by the next space.
+    """
+    rates, left, right = scipy.linalg.eig(matrix, left=True, right=True)
+    largest = np.max(np.abs(matrix))
+    grows = rates.real > tuning.MOMENTS_ON_GRIDS.growing * largest
+    left, right = left[:, grows].conj(), right[:, grows]
+    weights = (rates[grows] + largest) / np.sum(left * right, axis=0)
+    return matrix - ((right * weights) @ left.T).real
 
 
 def at_start(scene: Scene, axes: dict[Symbol, Axis]) -> Callable:

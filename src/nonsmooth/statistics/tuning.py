@@ -42,10 +42,12 @@ class MomentsOnGrids:
     # chosen: poles of the Krylov space; larger ones would resolve times that the grids do not
     poles: tuple[float, ...] = (0.0, 10.0)
     # chosen: dimensions of the spaces, each compared with the one before
-    dimensions: tuple[int, ...] = tuple(range(12, 85, 6))
+    dimensions: tuple[int, ...] = (12, 18, 24, 36, 48, 66, 84)
     projection: float = 0.05  # chosen: part of the tolerance for the projection
     coarsest: int = 1  # chosen: level of the first grid
     finest: int = 9  # chosen: level at which refinement ends
+    behind: int = 2  # chosen: levels that a variable may be coarser than the finest one
+    failed: float = 10.0  # chosen: an error so many times that of the grid before is a failure
     largest: int = 45_000  # chosen: grid points; each pole keeps its factors in memory
     # chosen: a function is left out if its part orthogonal to the others is smaller, relative to it
     dependent: float = 1e-10

@@ -123,14 +123,14 @@ def variance(
 
 def _solved(solve, scene, times, tol):
     """Solve for w and v, and refuse what is too inaccurate."""
-    accuracy = tuning.VARIANCE.tolerance[scene.dimension - 1] if tol is None else tol
+    first = accuracy = tuning.VARIANCE.tolerance[scene.dimension - 1] if tol is None else tol
     found, error = solve(scene, times, accuracy)
     if tol is None:
         rate, rate_error = (
             np.max(part[1] / np.where(times > 0, times, 1.0)) for part in (found, error)
         )
         accuracy *= min(1.0, max(rate, tuning.VARIANCE.least))
-        if rate_error > accuracy:
+        if accuracy < rate_error <= first:
             found, error = solve(scene, times, accuracy)
     require_accuracy(times, found, error, error[1], accuracy)
     return found, error

@@ -90,6 +90,20 @@ def test_two_variables_agree_with_the_integral_of_survival():
     assert abs(found.value - first - rest) < found.error + 6.5 * 3e-3 + 60 * 2e-4
 
 
+@pytest.mark.slow
+def test_where_the_transform_fails_paths_answer():
+    """Hardly damped, and a threshold that is crossed before elements resolve it: off by 70 %."""
+    scene = ns.Scene(
+        "obstacle", ns.White(0.62), n=96, damping=0.23, potential="x**2/4 + x**4/10", observable="x"
+    )
+    threshold = (-0.477, 0.475)
+    with pytest.raises(ToleranceError):
+        ns.mean_time_to_failure(scene, threshold, method="deterministic", tol=1e-3)
+    found = ns.mean_time_to_failure(scene, threshold)
+    assert found.method == "monte_carlo"
+    assert found.error < 0.02 * found.value
+
+
 @pytest.mark.parametrize(
     ("arguments", "cure"),
     [

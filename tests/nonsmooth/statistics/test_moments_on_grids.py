@@ -175,9 +175,9 @@ def test_what_cannot_be_solved_is_refused(monkeypatch):
     monkeypatch.setattr(tuning, "MOMENTS_ON_GRIDS", replace(chosen, largest=3000))
     with pytest.raises(ToleranceError, match="at tau = 3 has an error of"):
         ns.variance(SCENES["obstacle"], [3.0], tol=1e-7)
-    always = replace(chosen, largest=500, growing=-np.inf)  # every mode counts as growing
-    monkeypatch.setattr(tuning, "MOMENTS_ON_GRIDS", always)
-    with pytest.raises(ToleranceError, match="no stable projection"):
+    never = replace(chosen, largest=500, dimensions=())  # nothing is projected
+    monkeypatch.setattr(tuning, "MOMENTS_ON_GRIDS", never)
+    with pytest.raises(ToleranceError, match="no finite projection"):
         ns.variance(SCENES["obstacle"], [3.0], method="deterministic")
     # nobody asked for grids, and paths know
     assert ns.variance(SCENES["obstacle"], [3.0]).attrs["method"] == "monte_carlo"
