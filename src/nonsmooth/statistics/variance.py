@@ -15,7 +15,7 @@ from nonsmooth.checks import (
     require_threads,
     require_tolerance,
 )
-from nonsmooth.errors import SceneError, ToleranceError, answered
+from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer
 from nonsmooth.estimate import not_negative
 from nonsmooth.line import eigenfunctions, quadrature
 from nonsmooth.refine import until_agreement
@@ -101,24 +101,38 @@ def variance(
     given = tol is not None
     sample = partial(sampled_moments, scene, times, tol, seed, threads, envelope=envelope)
 
-    def answer(method, attempt):
-        return answered(attempt, lambda found: _dataset(times, *found, method), tol_given=given)
+    def attempt(method, solved):
+        return answered(solved, lambda found: _dataset(times, *found, method))
 
-    if method == "monte_carlo" or solve is None:
-        return answer("monte_carlo", sample)
-    either = method is None and solve is moments_on_grids.moments
-    either = either and times[0] > 0 and bool(np.all(np.diff(times) > 0))
-    if either and given:
-        try:  # A few paths are faster than any grid, if a few are enough.
-            return _dataset(times, *sample(most=tuning.VARIANCE.few_steps), "monte_carlo")
-        except ToleranceError:
-            pass
-    try:
-        return answer("deterministic", partial(_solved, solve, scene, times, tol))
-    except ToleranceError as refused:
-        if refused.result is not None or not either:
-            raise
-    return answer("monte_carlo", sample)  # nothing is known from grids
+    def solve_or_sample():
+        deterministic = partial(attempt, "deterministic", partial(_solved, solve, scene, times, tol))
+        monte_carlo = partial(attempt, "monte_carlo", sample)
+        if method == "monte_carlo" or solve is None:
+            return monte_carlo()
+        increasing = times[0] > 0 and bool(np.all(np.diff(times) > 0))
+        if method is not None or solve is _of_velocity or not increasing:
+            return deterministic()
+        if given:
+            try:  # A few paths are faster than any grid, if a few are enough.
+                few = partial(sample, most=tuning.VARIANCE.few_steps)
+                return attempt("monte_carlo", few)
+            except ToleranceError:
+                pass
+        return first_answer(
+            [deterministic, monte_carlo],
+            error=_relative_error,
+            # a tolerance that grids miss is out of the reach of paths
+            good_enough=lambda run: given or _relative_error(run) <= tuning.VARIANCE.share,
+        )
+
+    return answered(solve_or_sample, lambda run: run, tol_given=given)
+
+
+def _relative_error(run):
+    """Return the largest error of v(tau)/tau over the largest value."""
+    scale = np.where(run["time"] > 0, run["time"], 1.0)
+    value, error = (float(np.max(run[name] / scale)) for name in ("v", "v_error"))
+    return error / value if value > 0 else math.inf
 
 
 def _solved(solve, scene, times, tol):

@@ -8,7 +8,7 @@ import scipy.linalg
 from numpy.polynomial.legendre import leggauss
 
 import nonsmooth as ns
-from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
 from nonsmooth.grids import tensor_grid
 from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.solver import EVEN, ODD
@@ -181,6 +181,19 @@ def test_what_cannot_be_solved_is_refused(monkeypatch):
         ns.variance(SCENES["obstacle"], [3.0], method="deterministic")
     # nobody asked for grids, and paths know
     assert ns.variance(SCENES["obstacle"], [3.0]).attrs["method"] == "monte_carlo"
+
+
+@pytest.mark.slow
+def test_paths_answer_where_grids_hardly_tell(monkeypatch):
+    """By default; what is asked for by its name or within a tolerance is returned as it is."""
+    few = replace(tuning.MOMENTS_ON_GRIDS, largest=500, dimensions=(2, 4))
+    monkeypatch.setattr(tuning, "MOMENTS_ON_GRIDS", few)
+    with pytest.warns(AccuracyWarning):
+        solved = ns.variance(SCENES["obstacle"], [3.0], method="deterministic")
+    sampled = ns.variance(SCENES["obstacle"], [3.0])
+    assert sampled.attrs["method"] == "monte_carlo"
+    assert float(sampled["v_error"][0]) < 0.05 * float(sampled["v"][0])
+    assert abs(float(solved["v"][0] - sampled["v"][0])) < float(solved["v_error"][0])
 
 
 def test_errors_hold_where_they_oscillate():
