@@ -99,13 +99,14 @@ def variance(
     if scene.is_line and scene.grows_too_fast:
         quadrature.solved(scene)  # refuses g whose variance is infinite
     given = tol is not None
+    solved = partial(_solved, solve, scene, times, tol)
     sample = partial(sampled_moments, scene, times, tol, seed, threads, envelope=envelope)
 
-    def attempt(method, solved):
-        return answered(solved, lambda found: _dataset(times, *found, method))
+    def attempt(method, way):
+        return answered(way, lambda found: _dataset(times, *found, method))
 
     def solve_or_sample():
-        deterministic = partial(attempt, "deterministic", partial(_solved, solve, scene, times, tol))
+        deterministic = partial(attempt, "deterministic", solved)
         monte_carlo = partial(attempt, "monte_carlo", sample)
         if method == "monte_carlo" or solve is None:
             return monte_carlo()
