@@ -1,4 +1,4 @@
-"""Whether the stated errors of what grids of two variables give hold: kappa, densities, and others.
+"""Whether the errors hold that grids of two variables state, of kappa, densities and others.
 
 `python -m benchmarks.honesty_on_grids` prints one line per quantity; arguments choose quantities by
 their first words, `--first` the first seed and `--scenes` how many. Each random scene is solved to
@@ -64,6 +64,16 @@ def density(scene, tol):
     return (np.concatenate(values), np.concatenate(errors)), met
 
 
+def growth(scene, tol):
+    """Return v(tau)/tau at early, middle and late times, and their errors."""
+    times = np.array([0.3, 3.0, 10.0])
+    found, met = reached(lambda: ns.variance(scene, times, tol, "deterministic"))
+    return None if found is None else (
+        found["v"].values / times,
+        found["v_error"].values / times,
+    ), met
+
+
 def reached(call):
     """Call, and take what is reached where the tolerance is missed; None if nothing is."""
     with warnings.catch_warnings():
@@ -93,6 +103,7 @@ QUANTITIES = {
     "sampled kappa": (number(length), None, 3e-3, 20),
     "density": (density, 1e-2, 1e-3, 40),
     "spectral gap": (number(ns.spectral_gap), 1e-3, 1e-6, 60),
+    "variance": (growth, 1e-3, 2e-5, 40),
     "derivative by damping": (slope("damping"), 1e-3, 2e-5, 60),
     "derivative by n": (slope("n"), 1e-3, 2e-5, 60),
 }

@@ -29,6 +29,7 @@ from nonsmooth.grids.generator import evaluate, start_row
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import Grid
 from nonsmooth.progress import counter, interruptible
+from nonsmooth.refine import solvable
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.statistics import tuning
 
@@ -82,7 +83,8 @@ def moments(scene: Scene, times: np.ndarray, tol: float) -> tuple[np.ndarray, np
         with counter("grids") as advance:
 
             def counted(grid):
-                found = interruptible(partial(solve, grid))
+                with solvable():
+                    found = interruptible(partial(solve, grid))
                 advance(1)
                 return found
 
@@ -108,7 +110,7 @@ def _refined(scene, grid, solve, share):
     grids are not known beforehand, as they are in `refine.until_agreement`. Where a projection
     fails, the grid before counts.
     """
-    gain, before = grid_tuning.UNIFORM_REFINEMENT.gain, None
+    gain, before, limit = grid_tuning.UNIFORM_REFINEMENT.gain, None, np.inf
     least = dict.fromkeys(grid.levels, 0.0)
     while True:
         value, inexact = solve(grid)
@@ -117,16 +119,18 @@ def _refined(scene, grid, solve, share):
         combined = value + sum(trial - value for trial, _ in trials.values())
         unsure = inexact + sum(by_trial for _, by_trial in trials.values())
         found = _Found(grid, combined, sum(changes.values()) + 2 * unsure)
-        if before is not None:
-            ratio = share(found.error, combined) / share(before.error, combined)
-            if not ratio < tuning.MOMENTS_ON_GRIDS.failed:
-                found = before
-                break
+        size = share(found.error, combined)
+        if before is not None and not size < tuning.MOMENTS_ON_GRIDS.failed * limit:
+            found = before
+            break
         coarse = [s for s in changes if not share(changes[s], value) <= 1 / (2 * len(changes))]
         finer = _balanced(grid, coarse)
         if not coarse or not _affordable(scene, finer.all_raised()):
             break
-        grid, before, least = finer, found, least | {s: changes[s] / gain for s in coarse}
+        grid = finer
+        if np.isfinite(size):
+            before, limit = found, size
+            least = least | {s: changes[s] / gain for s in coarse}
     # a larger box changes less than a finer grid, which a coarser one tells as well
     boxed = found.grid.all_raised(-1) if min(found.grid.levels.values()) > 0 else found.grid
     beyond = np.abs(solve(boxed.enlarged())[0] - solve(boxed)[0])
@@ -299,6 +303,8 @@ def _decaying(matrix):
     Such a mode is not that of any grid, it differs from space to space. What is left out with it is
     seen in the change by the next space.
     """
+    if not np.all(np.isfinite(matrix)):
+        raise np.linalg.LinAlgError("the projection is not finite")
     rates, left, right = scipy.linalg.eig(matrix, left=True, right=True)
     largest = np.max(np.abs(matrix))
     grows = rates.real > tuning.MOMENTS_ON_GRIDS.growing * largest
