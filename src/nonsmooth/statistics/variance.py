@@ -50,8 +50,9 @@ def variance(
     method : {"deterministic", "monte_carlo"}, optional
         ``"deterministic"`` is possible for the state y with white noise, and for two state
         variables and a finite n. Unless a method is given, it is taken for these scenes, except
-        for two variables and a `tol` so loose that a few paths are enough. ``"monte_carlo"`` is
-        taken for all others.
+        for two variables and a `tol` so loose that a few paths are enough, or without a `tol` where
+        grids do not reach a twentieth of the largest v(tau)/tau. ``"monte_carlo"`` is taken for all
+        others.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
     envelope : str, optional

@@ -183,6 +183,36 @@ def test_what_cannot_be_solved_is_refused(monkeypatch):
     assert ns.variance(SCENES["obstacle"], [3.0]).attrs["method"] == "monte_carlo"
 
 
+def test_modes_that_grow_are_made_to_decay():
+    """The others stay as they are."""
+    rates = np.array([-3.0, -1.0, 0.5, -2.0])
+    modes = np.random.default_rng(1).normal(size=(4, 4))
+    matrix = modes @ np.diag(rates) @ np.linalg.inv(modes)
+    tamed = moments_on_grids._decaying(matrix)
+    expected = np.where(rates > 0, -np.max(np.abs(matrix)), rates)
+    assert np.allclose(tamed @ modes, modes * expected)
+
+
+@pytest.mark.slow
+def test_a_grid_that_fails_does_not_spoil_what_is_known(monkeypatch):
+    """Finer grids have values that are nonsense: the last good one answers, within its error."""
+    scene = SCENES["obstacle"]
+    exact = ns.variance(scene, [3.0], method="deterministic")["v"][0]
+    solve = moments_on_grids.moments_on
+
+    def failing(scene, grid, times, allowed):
+        found, inexact = solve(scene, grid, times, allowed)
+        fails = max(grid.levels.values()) > 2
+        return (-1e3 * found, np.abs(found)) if fails else (found, inexact)
+
+    monkeypatch.setattr(moments_on_grids, "moments_on", failing)
+    with pytest.raises(ToleranceError) as refused:
+        ns.variance(scene, [3.0], 1e-7, "deterministic")
+    found = refused.value.result
+    assert abs(found["v"][0] - exact) < found["v_error"][0]
+    assert found["v_error"][0] < 0.05 * exact
+
+
 @pytest.mark.slow
 def test_paths_answer_where_grids_hardly_tell(monkeypatch):
     """By default; what is asked for by its name or within a tolerance is returned as it is."""
