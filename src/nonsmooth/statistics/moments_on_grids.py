@@ -289,7 +289,7 @@ def _evolve(solver, slow, fast, g, start, gamma2, times, at):
     matrix[many:-1, many:-1] = fast.dot(solver.matrix(ODD) @ fast.rows.T)
     # the first of the slow functions is 1
     for block in (slice(1, many), slice(many, -1)):
-        matrix[block, block] = _decaying(matrix[block, block])
+        matrix[block, block] = decaying(matrix[block, block])
     # the exponential's last column is the change since the start, without cancellation
     matrix[:-1, -1] = matrix[:-1, :-1] @ np.concatenate([k0, r0])
     changes = np.array([scipy.linalg.expm(tau * matrix)[:-1, -1] for tau in times])
@@ -297,11 +297,25 @@ def _evolve(solver, slow, fast, g, start, gamma2, times, at):
     return np.array([w, gamma2 * times - changes[:, :many] @ at(solver, slow.rows, EVEN) - w**2])
 
 
-def _decaying(matrix):
+def decaying(matrix: np.ndarray) -> np.ndarray:
     """Make modes decay that grow: the generator has none, but its projection may.
 
     Such a mode is not that of any grid, it differs from space to space. What is left out with it is
     seen in the change by the next space.
+
+    Parameters
+    ----------
+    matrix : numpy.ndarray, shape (k, k)
+        The projected generator.
+
+    Returns
+    -------
+    numpy.ndarray, shape (k, k)
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the matrix is not finite.
     """
     if not np.all(np.isfinite(matrix)):
         raise np.linalg.LinAlgError("the projection is not finite")
