@@ -68,10 +68,9 @@ def growth(scene, tol):
     """Return v(tau)/tau at early, middle and late times, and their errors."""
     times = np.array([0.3, 3.0, 10.0])
     found, met = reached(lambda: ns.variance(scene, times, tol, "deterministic"))
-    return None if found is None else (
-        found["v"].values / times,
-        found["v_error"].values / times,
-    ), met
+    if found is None:
+        return None, met
+    return (found["v"].values / times, found["v_error"].values / times), met
 
 
 def reached(call):

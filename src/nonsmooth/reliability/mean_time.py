@@ -50,7 +50,8 @@ def mean_time_to_failure(
         ``"deterministic"`` takes the transform of the passage time to z -> 0; it is for the scenes
         for which `crossing_probability` has it, with finite thresholds, unless the start is far in
         the tails, and is chosen for these unless `step` or `paths` is given. Where it misses the
-        tolerance, ``"monte_carlo"`` is tried, too, unless a method is given.
+        tolerance, ``"monte_carlo"`` is tried, too, unless a method is given or g grows faster than
+        the theorems allow.
     tol : float, optional
         Relative error wanted; 1e-6 and 1e-3 (deterministic, one and two variables) or 2e-2 (Monte
         Carlo) unless given.
@@ -88,7 +89,10 @@ def mean_time_to_failure(
     solvable = transformed_mean.applies(scene) and not one_sided
     if method is None:
         sampled = not solvable or step is not None or paths is not None
-        ways = ["monte_carlo"] if sampled else ["deterministic", "monte_carlo"]
+        ways = ["monte_carlo"] if sampled else ["deterministic"]
+        # of a g that grows too fast, the bias of a step is not known well enough to be told
+        if not sampled and not scene.grows_too_fast:
+            ways.append("monte_carlo")
     else:
         ways = [method]
     if method == "deterministic" and (one_sided or step is not None or paths is not None):
