@@ -44,6 +44,7 @@ from nonsmooth.errors import (
     of_another_quantity,
     quoted,
 )
+from nonsmooth.linear_algebra.effort import limited
 from nonsmooth.paths.sampling import PRECISIONS
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene, require_random, uncentred
@@ -85,12 +86,13 @@ def crossing_probability(
         Chosen by the scene, `tol` and the other parameters unless given.
 
         - ``"deterministic"`` solves an equation for the first passage. It is for the state y with
-          white noise and, in up to a minute or two, for two state variables with finite n, odd g
-          and drift, and white or Langevin noise. For these scenes it is chosen, with three
+          white noise and, in up to some minutes, for two state variables with finite n, odd g and
+          drift, and white or Langevin noise. For these scenes it is chosen, with three
           exceptions: a parameter of another method is given; or `tol` is so loose that
           ``"monte_carlo"`` should be faster or, for one variable and odd g, that ``"corrected"``
           meets it; or p is so large that ``"corrected"`` should meet `tol` (above 1e7 for one
-          variable, where the solver rounds, and above 10 / `tol` for two).
+          variable, where the solver rounds, and above 10 / `tol` for two). If no `tol` is given, it
+          ends after about a minute with what it has, or leaves the answer to ``"monte_carlo"``.
         - ``"monte_carlo"`` counts paths. It is chosen for all other scenes, and where the
           deterministic method misses a tolerance that is loose enough for counting.
         - ``"importance_sampling"`` leads paths to the threshold and weights them, for rare
@@ -193,7 +195,8 @@ def crossing_probability(
         result = curves(values, horizons, name, attributes, coordinates(thresholds))
         return result if several else result.isel(threshold=0, drop=True)
 
-    return answered(solve, present, tol_given=tol is not None)
+    with limited(tol):
+        return answered(solve, present, tol_given=tol is not None)
 
 
 def require_options(method: str | None, options: Mapping[str, Any]) -> dict[str, Any]:

@@ -18,6 +18,7 @@ import numpy as np
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
+from nonsmooth.linear_algebra.effort import EIGENPROBLEM, spend
 
 
 @dataclass(frozen=True)
@@ -72,12 +73,18 @@ class ReducedOrdinates:
             What `PlaneOrdinates.eliminated` returns for a place z.
         continued : dict
             What `continued` returns for it.
+
+        Raises
+        ------
+        ToleranceError
+            If the limit of the `effort` does not cover it.
         """
         matrices, rows = {}, {}
         for parity, part in eliminated.items():
             matrices[parity] = self.tests(parity) @ part.at_moving(continued[parity])
             rows[parity] = part.start_row() @ self.functions(parity)
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
+        spend(EIGENPROBLEM * len(matrices[EVEN]) ** 3)
         rates, even = _modes(matrices[EVEN], matrices[ODD])
         odd = matrices[EVEN] @ even / rates
         ones, decays = self.tests(EVEN) @ flow, _decaying(rates, self.grid.way)

@@ -16,6 +16,7 @@ from nonsmooth.checks import (
 )
 from nonsmooth.errors import SceneError, answered, first_answer
 from nonsmooth.estimate import Estimate
+from nonsmooth.linear_algebra.effort import limited
 from nonsmooth.reliability import transformed_mean, tuning
 from nonsmooth.reliability.sampled_mean import sampled_mean_time
 from nonsmooth.scenes.scene import Scene, require_random
@@ -120,15 +121,12 @@ def mean_time_to_failure(
         way, value, error = found
         return Estimate(float(value / p), float(error / p), way, time.perf_counter() - began)
 
-    return answered(
-        lambda: first_answer(
-            [partial(attempt, way) for way in ways],
-            error=lambda found: found[2],
-            good_enough=good_enough,
-        ),
-        present,
-        tol_given=tol is not None,
-    )
+    def solve():
+        attempts = [partial(attempt, way) for way in ways]
+        return first_answer(attempts, error=lambda found: found[2], good_enough=good_enough)
+
+    with limited(tol):
+        return answered(solve, present, tol_given=tol is not None)
 
 
 def _require_drift(scene, side, seed, threads):

@@ -22,6 +22,7 @@ from nonsmooth.crossing.brownian import brownian_crossing
 from nonsmooth.crossing.first_passage.distribution import default_tolerance
 from nonsmooth.crossing.probability import crossing_probability, require_options
 from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
+from nonsmooth.linear_algebra.effort import limited
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.reliability import tuning
 from nonsmooth.reliability.reach import typical_reach, typical_time
@@ -38,6 +39,7 @@ from nonsmooth.results import between_limits
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.thresholds import bounds
 
+SAMPLED = "monte_carlo"
 SIDES = {"both": (-1.0, 1.0), "upper": (-np.inf, 1.0), "lower": (-1.0, np.inf)}
 
 
@@ -75,7 +77,8 @@ def crossing_threshold(
         As for `crossing_probability`.
     tol : float, optional
         Absolute error wanted of W, as for `crossing_probability`. Unless given, it is at most a
-        tenth of P and of 1 - P.
+        tenth of P and of 1 - P; and where the deterministic method of two variables would take
+        longer than a minute or so, paths are counted.
 
     Returns
     -------
@@ -136,18 +139,12 @@ def crossing_threshold(
         told = {"sides": sides} | ask.attributes
         return between_limits(over, dims, "threshold", "threshold", parts, **told)
 
-    return answered(
-        lambda: ask.roots(
-            [P for P, _ in pairs],
-            [guess(*pair) for pair in pairs],
-            curves,
-            curve,
-            brownian,
-            FALLING,
-        ),
-        present,
-        tol_given=tol is not None,
-    )
+    def solve():
+        guesses = [guess(*pair) for pair in pairs]
+        return ask.roots([P for P, _ in pairs], guesses, curves, curve, brownian, FALLING)
+
+    with limited(tol):
+        return answered(solve, present, tol_given=tol is not None)
 
 
 def failure_time(
@@ -228,18 +225,12 @@ def failure_time(
             over, ("probability",), "time", "time", np.array(roots).T, **ask.attributes
         )
 
-    return answered(
-        lambda: ask.roots(
-            list(targets),
-            [guess(P) for P in targets],
-            curves,
-            curve,
-            brownian,
-            RISING,
-        ),
-        present,
-        tol_given=tol is not None,
-    )
+    def solve():
+        guesses = [guess(P) for P in targets]
+        return ask.roots(list(targets), guesses, curves, curve, brownian, RISING)
+
+    with limited(tol):
+        return answered(solve, present, tol_given=tol is not None)
 
 
 def _probabilities(values):
@@ -298,7 +289,7 @@ class _Question:
     def _is_sampled(self):
         given = self._given
         if "method" in given:
-            return given["method"] == "monte_carlo"
+            return given["method"] == SAMPLED
         return "order" not in given and bool({"step", "paths"} & given.keys())
 
     def roots(
@@ -317,20 +308,29 @@ class _Question:
         reference is W of Brownian motion.
         """
         tol = self.tolerance(targets)
-        sampled = self._is_sampled()
-        if not sampled and not {"method", "order"} & self._given.keys():
-            sampled = (  # the method follows from the scene
-                default_tolerance(self._scene) is None
-                or curve(0, np.array(guesses[0][:1]), tol).attrs["method"] == "monte_carlo"
-            )
-        if sampled:
-            self._given["method"] = "monte_carlo"
+        # otherwise the method follows from the scene
+        named = bool({"method", "order"} & self._given.keys())
+        sampled = self._is_sampled() or (not named and default_tolerance(self._scene) is None)
+
+        def is_sampled():
+            return not named and curve(0, np.array(guesses[0][:1]), tol).attrs["method"] == SAMPLED
+
+        found = None
+        try:
+            if not sampled and not is_sampled():
+                found = [
+                    solved_root(
+                        partial(_one, partial(curve, k), tol), reference, target, guess, sense
+                    )
+                    for k, (target, guess) in enumerate(zip(targets, guesses, strict=True))
+                ]
+        except ToleranceError:  # the solver found nothing, or not within its effort
+            if named or self._tol is not None:
+                raise
+            self._refusal, self.attributes = None, {}
+        if found is None:
+            self._given["method"] = SAMPLED
             found = _on_grids(curves, targets, guesses, sense, self.tolerance(targets))
-        else:
-            found = [
-                solved_root(partial(_one, partial(curve, k), tol), reference, target, guess, sense)
-                for k, (target, guess) in enumerate(zip(targets, guesses, strict=True))
-            ]
         if self._refusal is not None:
             raise ToleranceError(self._refusal, found)
         return found

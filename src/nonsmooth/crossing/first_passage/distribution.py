@@ -198,7 +198,8 @@ def _one_in_plane(together, row, tol):
     """
     times = together.times
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
-    reasons = ["the solution is not finite"]
+    advice = "use method='monte_carlo'"
+    reasons = [f"the solution is not finite; {advice}"]
 
     def solve(here, parts, solver, at=None):
         """Solve at some of the times; keep what has a smaller error than what is known.
@@ -212,7 +213,10 @@ def _one_in_plane(together, row, tol):
         try:
             found, stated = _part_by_part(problem, times[at], parts, solver, tol)
         except UnstableError as unstable:
-            reasons.append(str(unstable))
+            reasons.append(f"{unstable}; {advice}")
+            return
+        except ToleranceError as refused:
+            reasons.append(str(refused))
             return
         better = here[at] & (stated.max(axis=0) < error[:, at].max(axis=0))
         chosen = np.flatnonzero(at)[better]
@@ -230,7 +234,7 @@ def _one_in_plane(together, row, tol):
         if np.sum(missed & late) < np.sum(~early):  # without the times that are worst
             solve(missed & late, *by_contours)
     if np.isinf(error).any():
-        raise ToleranceError(f"{reasons[-1]}; use method='monte_carlo'")
+        raise ToleranceError(reasons[-1])
     return _answer(whole, times, solution, error, tol)
 
 

@@ -22,6 +22,7 @@ from nonsmooth.kinetic.marching.coefficients import CoefficientSteps
 from nonsmooth.kinetic.marching.split_step import IMAGINARY, Interval
 from nonsmooth.kinetic.marching.tensor import TensorSteps
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, UnstableError
+from nonsmooth.linear_algebra.effort import spend
 
 
 def stepped(
@@ -134,6 +135,7 @@ def _survival(steps, longest, per_length, last):
     times, values = [0.0], [1.0]
     steps.transport_half()
     while times[-1] < last:
+        spend(steps.operations)
         steps.mix()
         times.append(times[-1] + steps.step)
         values.append(steps.survival())

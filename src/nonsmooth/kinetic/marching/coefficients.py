@@ -33,6 +33,12 @@ class CoefficientSteps(SplitStep):
                 for parity in (EVEN, ODD)
             }
 
+    @property
+    def operations(self) -> float:
+        """Additions and multiplications of a step."""
+        mixed = sum(matrix.size for matrix in self._mixing.values())
+        return super().operations + 2.0 * mixed * self.there.shape[1]
+
     def mix(self) -> None:
         """Apply exp(A t) to the even and to the odd part."""
         many, parts = len(self.there), {}

@@ -119,6 +119,12 @@ class SplitStep(ABC):
         """Move by g for a step: half a step after `mix` and half a step before the next one."""
         self._transport(self.there, self.opposite, self._whole)
 
+    @property
+    def operations(self) -> float:
+        """Additions and multiplications of a step."""
+        groups = zip(self._rows, self._whole, strict=True)
+        return 2.0 * sum(flows.size * at.shape[-1] for at, flows in groups)
+
     def transport_half(self) -> None:
         """Move by g for half a step, at first and around a change of the step."""
         self._transport(self.there, self.opposite, self._half)

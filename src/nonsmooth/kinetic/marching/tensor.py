@@ -139,6 +139,12 @@ class TensorSteps(SplitStep):
         self._driven = np.array([dense.exponential(step / 2 * part) for part in grid.driven])
         self._other = np.array([dense.exponential(step * part) for part in grid.other])
 
+    @property
+    def operations(self) -> float:
+        """Additions and multiplications of a step."""
+        across = 2 * self._driven.shape[-1] + self._other.shape[-1]
+        return super().operations + 2.0 * across * self._values.size
+
     def mix(self) -> None:
         """Apply D for half a step, O, and D for half a step."""
         by_driven, spare = (part.transpose(1, 0, 2) for part in (self._values, self._spare))
