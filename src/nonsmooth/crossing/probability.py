@@ -44,7 +44,7 @@ from nonsmooth.errors import (
     of_another_quantity,
     quoted,
 )
-from nonsmooth.linear_algebra.effort import limited
+from nonsmooth.linear_algebra.effort import holds, limited
 from nonsmooth.paths.sampling import PRECISIONS
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene, require_random, uncentred
@@ -249,11 +249,13 @@ def _attempts(scene, thresholds, horizons, p, given):
         return [("importance_sampling", {})] if quicker else counted
     tol = given.get("tol", default)
     attempts = [("deterministic", {})]
-    if tol >= choice.sampled_tolerance or "tol" not in given:
+    # who gives a tolerance and limits the effort counts paths of a tolerance of its own
+    limits = "tol" in given and holds()
+    if not limits and (tol >= choice.sampled_tolerance or "tol" not in given):
         attempts.append(("monte_carlo", {"most": choice.sampled_steps}))
     order = _order_that_suffices(scene, p, horizons[-1], tol, "tol" in given)
     formula = [] if order is None else [("corrected", {"order": order, "tol": tol})]
-    if "tol" not in given:
+    if limits or "tol" not in given:
         return formula + attempts
     windows = 1 + np.log(horizons[-1] / horizons[0]) / np.log(choice.window)
     pilot, least = least_steps(scene, p * horizons[-1], tol)

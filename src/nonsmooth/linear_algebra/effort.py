@@ -37,6 +37,11 @@ def limited(tol: float | None) -> Iterator[None]:
         _left.reset(before)
 
 
+def holds() -> bool:
+    """Whether a limit holds."""
+    return _left.get() is not None
+
+
 def spend(operations: float) -> None:
     """Note that so many additions and multiplications follow.
 

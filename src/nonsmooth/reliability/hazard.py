@@ -7,6 +7,7 @@ from scipy.special import ndtri
 
 from nonsmooth.central_differences import central
 from nonsmooth.checks import require_increasing, require_positive
+from nonsmooth.crossing.first_passage.distribution import default_tolerance
 from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.crossing.proportions import proportion
 from nonsmooth.errors import answered
@@ -47,7 +48,8 @@ def hazard_rate(
         Over `horizon`, with the method among its attributes: `hazard_rate`, per unit of T, its
         error `hazard_rate_error`, and `lower` and `upper`, between which it is. W is differentiated
         over a tenth of T to either side, and the error has what the error of W becomes and what
-        differences of another width or order change. By Monte Carlo, paths are counted that cross
+        differences of another width or order change. Where no `tol` is given and W is known to few
+        digits, paths may tell more and are taken then. By Monte Carlo, paths are counted that cross
         within this time; the error is the standard error and the biases, and the limits hold with
         95 %.
 
@@ -72,13 +74,21 @@ def hazard_rate(
         over = {"horizon": ("horizon", horizons, "horizon T")}
         return between_limits(over, ("horizon",), "hazard_rate", "hazard rate", found, **run.attrs)
 
-    return answered(
-        lambda: crossing_probability(
+    def ask(method, tol):
+        return crossing_probability(
             scene, pair, times, p, method, tol, step, paths, seed, None, threads, order
-        ),
-        present,
-        tol_given=tol is not None,
-    )
+        )
+
+    def solve():
+        found, usual = ask(method, tol), default_tolerance(scene)
+        solved = method is None and tol is None and found.attrs["method"] == "deterministic"
+        if not solved or found["probability_error"].max() <= usual:
+            return found
+        # differences of what is known to few digits may tell less than paths do
+        counted = ask("monte_carlo", tuning.COUNTED)
+        return min(found, counted, key=lambda run: present(run)["hazard_rate_error"].max())
+
+    return answered(solve, present, tol_given=tol is not None)
 
 
 def _differentiated(at, horizons):

@@ -267,9 +267,10 @@ class _Question:
         try:
             found = crossing_probability(self._scene, levels, horizons, **self._given, **wanted)
         except ToleranceError as refused:
+            self._refusal = str(refused)
             if not isinstance(refused.result, xr.Dataset):
                 raise
-            found, self._refusal = refused.result, str(refused)
+            found = refused.result
         taken = self.attributes.get("method", "").split(", ")
         methods = dict.fromkeys([*filter(None, taken), found.attrs["method"]])
         self.attributes = found.attrs | {"method": ", ".join(methods)}
@@ -315,7 +316,7 @@ class _Question:
         def is_sampled():
             return not named and curve(0, np.array(guesses[0][:1]), tol).attrs["method"] == SAMPLED
 
-        found = None
+        found, counted = None, np.inf
         try:
             if not sampled and not is_sampled():
                 found = [
@@ -328,9 +329,11 @@ class _Question:
             if named or self._tol is not None:
                 raise
             self._refusal, self.attributes = None, {}
+            counted = tuning.COUNTED
         if found is None:
             self._given["method"] = SAMPLED
-            found = _on_grids(curves, targets, guesses, sense, self.tolerance(targets))
+            counted = min(counted, self.tolerance(targets))
+            found = _on_grids(curves, targets, guesses, sense, counted)
         if self._refusal is not None:
             raise ToleranceError(self._refusal, found)
         return found

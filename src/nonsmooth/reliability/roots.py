@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
+from nonsmooth.errors import ToleranceError
 from nonsmooth.reliability import tuning
 
 RISING, FALLING = 1, -1
@@ -84,15 +85,29 @@ def solved_root(
     -------
     Root
         The error is the distance to the farther limit.
+
+    Raises
+    ------
+    ToleranceError
+        If `evaluate` does before W is known well enough to tell a root.
     """
     search, wanted = tuning.SEARCH, equivalent(reference, target, sense)
-    x, left, right, points = guess[0], 0.0, np.inf, []
+    x, left, right = guess[0], 0.0, np.inf
+    points: list[_Point] = []
+    known: tuple | None = None
     for _ in range(search.most):
-        values = evaluate(np.array([x]))
+        try:
+            values = evaluate(np.array([x]))
+        except ToleranceError:
+            root = None if known is None else _by_slope(*known, np.inf)
+            if root is None:
+                raise
+            return root  # with wider limits
         points.append(_point(np.log(x), values, reference, sense, wanted))
         base = min(points, key=lambda point: abs(point.gap))
         slope, doubt = _slope(points, base, guess[1])
-        root = _by_slope(base, slope, doubt)
+        known = base, slope, doubt
+        root = _by_slope(*known, search.vague)
         if root is not None:
             return root
         distance = abs(float(values.probability[0]) - target)
@@ -171,14 +186,17 @@ def _slope(points, base, guess):
     return best
 
 
-def _by_slope(base, slope, doubt):
-    """Return the root that a point and the slope tell, or None where they tell too little."""
+def _by_slope(base, slope, doubt, most):
+    """Return the root that a point and the slope tell, or None where they tell too little.
+
+    What the slope leaves open may be so many times what the error of W does.
+    """
     search = tuning.SEARCH
     ways = -np.array([base.gap, base.high, base.low]) / slope
     if not np.all(np.isfinite(ways)):
         return None
     doubts = doubt + search.bend * np.abs(ways)
-    vague = abs(base.gap) * doubt > search.vague * base.error + search.rounding
+    vague = abs(base.gap) * doubt > most * base.error + search.rounding
     if vague or doubts.max() > search.doubt:
         return None
     way, first, last = ways

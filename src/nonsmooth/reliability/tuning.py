@@ -22,6 +22,9 @@ class Scale:
     counted: float = 20.0  # chosen: paths beyond the outermost quantile that is read off
 
 
+COUNTED = 2e-3  # chosen: error of W by paths that take the place of a solver
+
+
 @dataclass(frozen=True)
 class Search:
     """The search of a root of W."""
