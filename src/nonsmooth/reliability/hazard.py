@@ -7,7 +7,6 @@ from scipy.special import ndtri
 
 from nonsmooth.central_differences import central
 from nonsmooth.checks import require_increasing, require_positive
-from nonsmooth.crossing.first_passage.distribution import default_tolerance
 from nonsmooth.crossing.probability import crossing_probability
 from nonsmooth.crossing.proportions import proportion
 from nonsmooth.errors import answered
@@ -80,9 +79,9 @@ def hazard_rate(
         )
 
     def solve():
-        found, usual = ask(method, tol), default_tolerance(scene)
+        found = ask(method, tol)
         solved = method is None and tol is None and found.attrs["method"] == "deterministic"
-        if not solved or found["probability_error"].max() <= usual:
+        if not solved or found["probability_error"].max() <= tuning.HAZARD.few_digits:
             return found
         # differences of what is known to few digits may tell less than paths do
         counted = ask("monte_carlo", tuning.COUNTED)

@@ -332,8 +332,9 @@ class _Question:
             counted = tuning.COUNTED
         if found is None:
             self._given["method"] = SAMPLED
-            counted = min(counted, self.tolerance(targets))
-            found = _on_grids(curves, targets, guesses, sense, counted)
+            wanted = self.tolerance(targets)
+            assert wanted is not None  # only formulas take none
+            found = _on_grids(curves, targets, guesses, sense, min(counted, wanted))
         if self._refusal is not None:
             raise ToleranceError(self._refusal, found)
         return found

@@ -94,7 +94,7 @@ def solved_root(
     search, wanted = tuning.SEARCH, equivalent(reference, target, sense)
     x, left, right = guess[0], 0.0, np.inf
     points: list[_Point] = []
-    known: tuple | None = None
+    known: tuple[_Point, float, float] | None = None
     for _ in range(search.most):
         try:
             values = evaluate(np.array([x]))

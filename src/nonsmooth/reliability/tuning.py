@@ -100,6 +100,7 @@ class Hazard:
     # chosen: of seven points, so that the error of the order 6 is far below that of W, 1e-7
     spacing: float = 0.05
     small: float = 0.1  # chosen: largest relative error of 1 - W; twice the error is stated for it
+    few_digits: float = 2e-4  # chosen: error of W above which paths may tell more
 
 
 HAZARD = Hazard()
