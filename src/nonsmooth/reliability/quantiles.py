@@ -312,13 +312,11 @@ class _Question:
         # otherwise the method follows from the scene
         named = bool({"method", "order"} & self._given.keys())
         sampled = self._is_sampled() or (not named and default_tolerance(self._scene) is None)
-
-        def is_sampled():
-            return not named and curve(0, np.array(guesses[0][:1]), tol).attrs["method"] == SAMPLED
-
         found, counted = None, np.inf
         try:
-            if not sampled and not is_sampled():
+            if not sampled and not named:
+                sampled = curve(0, np.array(guesses[0][:1]), tol).attrs["method"] == SAMPLED
+            if not sampled:
                 found = [
                     solved_root(
                         partial(_one, partial(curve, k), tol), reference, target, guess, sense
