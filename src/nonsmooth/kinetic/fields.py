@@ -2,7 +2,9 @@
 
 The modes of all ordinates solve (z - A) h = g d_x h in a slab exactly in x. On the nodes where g is
 small they decay so fast that rounding spoils the fastest of them; these only make up what is next
-to the faces. That is enough for solutions whose space is wanted and not they themselves.
+to the faces. That is enough for solutions whose space is wanted and not they themselves. Where
+oscillations make slower modes nearly parallel, rounding spoils solutions at all depths; slabs are
+doubled there (`doubled_slabs`).
 """
 
 import math
@@ -59,12 +61,43 @@ def fields(
         even, odd = (modes.even @ (above + below)).real, (modes.odd @ (above - below)).real
         # values at a node's mirror image are those at the node, as far from the other face
         found.append(ordinates.functions(EVEN) @ np.hstack([even + odd, even - odd]))
+    require_bounded(grid, found)
+    return found
+
+
+def require_bounded(grid: PlaneOrdinates, found: list[np.ndarray]) -> None:
+    """Refuse solutions that are much larger than 1.
+
+    Parameters
+    ----------
+    grid : PlaneOrdinates
+    found : list of numpy.ndarray, shape (k, m)
+        As `fields` returns them.
+
+    Raises
+    ------
+    UnstableError
+        If one is.
+    """
     flow = np.sqrt(grid.masses * np.abs(grid.speeds))
     size = max(np.linalg.norm(flow[:, None] * h, axis=0).max() for h in found)
     size /= np.linalg.norm(flow * grid.ones[: len(flow)])
     if not size < tuning.FIELDS.unstable:
         raise UnstableError(f"the solutions on {len(flow)} ordinates amplify by {size:.2g}")
-    return found
+
+
+def rounding(grid: PlaneOrdinates, z: float, thickness: float) -> float:
+    """Estimate the relative errors of `fields` by rounding, from the strengths of the modes.
+
+    Parameters
+    ----------
+    grid, z, thickness
+        As for `fields`.
+    """
+    ordinates, eliminated = unreduced(grid), grid.eliminated(z)
+    modes = ordinates.modes(eliminated, ordinates.continued(eliminated))
+    strengths = np.linalg.solve(modes.at_wall(thickness), modes.ones)
+    return np.finfo(float).eps * np.max(np.abs(strengths)) / np.linalg.norm(modes.ones)
 
 
 def _depths(length, least, slowest):

@@ -64,6 +64,27 @@ class ReducedOrdinates:
         """Continue the functions of each parity to all nodes, at the z of `eliminated`."""
         return {p: part.continued(self.functions(p)) for p, part in eliminated.items()}
 
+    def matrices(self, eliminated: dict, continued: dict) -> tuple[dict, dict]:
+        """Compute E and O, and the rows that interpolate even and odd functions at the start.
+
+        Parameters
+        ----------
+        eliminated, continued : dict
+            As for `modes`.
+
+        Returns
+        -------
+        matrices : dict
+            From parities, shape (r, r).
+        rows : dict
+            From parities, shape (r,).
+        """
+        matrices, rows = {}, {}
+        for parity, part in eliminated.items():
+            matrices[parity] = self.tests(parity) @ part.at_moving(continued[parity])
+            rows[parity] = part.start_row() @ self.functions(parity)
+        return matrices, rows
+
     def modes(self, eliminated: dict, continued: dict) -> "ReducedModes":
         """Compute the modes.
 
@@ -79,10 +100,7 @@ class ReducedOrdinates:
         ToleranceError
             If the limit of the `effort` does not cover it.
         """
-        matrices, rows = {}, {}
-        for parity, part in eliminated.items():
-            matrices[parity] = self.tests(parity) @ part.at_moving(continued[parity])
-            rows[parity] = part.start_row() @ self.functions(parity)
+        matrices, rows = self.matrices(eliminated, continued)
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
         spend(EIGENPROBLEM * len(matrices[EVEN]) ** 3)
         rates, even = _modes(matrices[EVEN], matrices[ODD])

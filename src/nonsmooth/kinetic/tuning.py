@@ -132,6 +132,18 @@ class Fields:
 
 
 @dataclass(frozen=True)
+class DoubledSlabs:
+    """The same solutions, by doubling of slabs."""
+
+    # chosen: least depth over the thickness of the first slab, at least; with 2 bases were worse
+    parts: float = 4.0
+    even: int = 4  # chosen: how often the half of a slab is halved evenly, ...
+    near: int = 3  # chosen: ... and how often what is nearer to the face than any depth
+    opaque: float = 1e-9  # chosen: relative size of what is seen through a slab taken as infinite
+    most: int = 64  # chosen: doublings of a slab that is not opaque because of rounding
+
+
+@dataclass(frozen=True)
 class ReducedOrdinates:
     """Modes of few ordinates."""
 
@@ -177,6 +189,7 @@ CASE_MODES = CaseModes()
 ADJOINT = Adjoint()
 PLANE_ORDINATES = PlaneOrdinates()
 FIELDS = Fields()
+DOUBLED_SLABS = DoubledSlabs()
 REDUCED_ORDINATES = ReducedOrdinates()
 TAIL_DESCENT = TailDescent()
 TAIL_EQUATION = TailEquation()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from nonsmooth.kinetic.fields import fields
+from nonsmooth.kinetic.doubled_slabs import fields
 from nonsmooth.kinetic.ordinates_plane import UnstableError
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from slabs import slab
@@ -30,7 +30,7 @@ def near_face(found):
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("z", [0.02, 2.0])
 def test_faces_are_those_of_slabs(name, z):
-    """What a face sends back, from modes and from doubled slabs, whose error is measured.
+    """What a face sends back, as from slabs of implicit Euler steps, whose error is measured.
 
     The least depth is so small that h hardly differs from that at the face. Slabs are of second
     order where h changes little, and of a lower one where g is small. The change to slabs twice as
@@ -53,7 +53,7 @@ def test_a_thick_slab_is_a_half_space():
 
 
 def test_halves_are_solved_too():
-    """Bit for bit: the same modes serve them as each alone."""
+    """Bit for bit: slabs made on the way serve them as each alone."""
     grid = coarse_ordinates(COLORED_FRICTION)
     thicknesses = 2.0 ** np.array([9, 8, 7]) * grid.way
     alone = [fields(grid, 1e-3, thickness, grid.way)[0] for thickness in thicknesses]

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cached_property
 
 import numpy as np
 
@@ -16,8 +17,7 @@ from nonsmooth.crossing.first_passage.problem import (
 from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, in_common, saddle_points
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.generator import Change
-from nonsmooth.kinetic import ordinates_gibbs
-from nonsmooth.kinetic.fields import fields
+from nonsmooth.kinetic import doubled_slabs, fields, ordinates_gibbs
 from nonsmooth.kinetic.marching.split_step import IMAGINARY
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
@@ -231,9 +231,22 @@ class SharedGrids:
             grids = [grid]
             if self._change is not None:
                 grids.append(grid.changed(tuning.PLANE_TRANSFORM.changed))
-            found = [fields(one, z, self._length, least * way, self._halvings) for one in grids]
+            found = [
+                self._solver.fields(one, z, self._length, least * way, self._halvings)
+                for one in grids
+            ]
             self._known[key] = [np.hstack(of_half) for of_half in zip(*found, strict=True)]
         return self._known[key]
+
+    @cached_property
+    def _solver(self):
+        """The module that solves at many depths: modes take the least time, but where they round.
+
+        Finer grids round more than the coarsest.
+        """
+        z = 1 / math.sqrt(self._times[0] * self._times[-1])
+        rounded = fields.rounding(self.grid(0, 0), z, self._length)
+        return fields if rounded < tuning.PLANE_TRANSFORM.rounding else doubled_slabs
 
     def _shifts(self, refined):
         """Real z, of the sizes of the inverse times; of a basis that is `refined` so many times."""
