@@ -17,7 +17,8 @@ nodes, in which they are taken at all others. The manual page is `docs/methods/k
   and where the invariant density is known.
 - `case_modes.modes`: elementary solutions, for one variable.
 - `derivatives`: of the transform with respect to parameters.
-- `fields.fields`: solutions at many depths, for two.
+- `fields.fields`: solutions at many depths, for two, by modes.
+- `doubled_slabs.fields`: the same by doubling of slabs, where modes are nearly parallel.
 - `reduced_ordinates.reduced`: the basis that they span, and the transform in it.
 - `marching`: the equation in time, by Strang's splitting.
 - `tail_descent.tail`: a start so far in the tails that the modes cancel; the state falls from there

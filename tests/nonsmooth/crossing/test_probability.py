@@ -8,7 +8,7 @@ import nonsmooth as ns
 from nonsmooth.crossing.first_passage import line, plane
 from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.fields import fields
+from nonsmooth.kinetic import fields
 from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates
 from references import COLORED_FRICTION, FRICTION, GAMMA2, OBSTACLE, SKEWED, W_STAR
 
@@ -247,16 +247,17 @@ def test_thresholds_of_two_variables_share_fields_and_contours(monkeypatch):
     of which several levels may need a few more.
     """
     solutions, modes, transform = [], [], ReducedOrdinates.first_passage
+    solve = fields.fields
 
     def counted(grid, *arguments):
         solutions.append(len(grid.speeds) ** 3)
-        return fields(grid, *arguments)
+        return solve(grid, *arguments)
 
     def transformed(ordinates, *arguments):
         modes.append(ordinates.basis.shape[1] ** 3)
         return transform(ordinates, *arguments)
 
-    monkeypatch.setattr(plane, "fields", counted)
+    monkeypatch.setattr(fields, "fields", counted)
     monkeypatch.setattr(ReducedOrdinates, "first_passage", transformed)
     thresholds, work = [0.15, 0.25], []
     for asked in (thresholds, *thresholds):

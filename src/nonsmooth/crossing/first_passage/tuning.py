@@ -354,9 +354,8 @@ STEPPED_PARTS = (
     Part(1, 4, 1, 0.1),
     Part(1, 5, 1, 0.1, beyond=1 / 3),
 )
-# driven and other variable of the grid, basis, contour. Changes by the last two fall fast: to a
-# twentieth and to an eighth were seen of those by the basis, so that half of one is more than what
-# is left
+# driven and other variable of the grid, basis, contour. Changes by contours fall fast: to an eighth
+# was seen, so that half of one is more than what is left. Those by bases are irregular
 PLANE_PARTS = (
     Part(2, 6, 1, 0.05, True),
     Part(2, 6, 1, 0.3, True),

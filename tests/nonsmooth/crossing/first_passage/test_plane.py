@@ -8,7 +8,7 @@ from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.errors import ToleranceError
-from nonsmooth.kinetic.fields import fields
+from nonsmooth.kinetic import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC
 
 
@@ -82,18 +82,18 @@ class TestCrossing:
 
         Much of it are modes of all nodes, whose cost grows like the cube of their number.
         """
-        work = []
+        work, solve = [], fields.fields
 
         def counted(grid, *arguments):
             work.append(len(grid.speeds) ** 3)
-            return fields(grid, *arguments)
+            return solve(grid, *arguments)
 
         def asked(times, tol):
             work.clear()
             deterministic_crossing(OBSTACLE, np.array([[-6.0, 6.0]]), times, tol)
             return sum(work)
 
-        monkeypatch.setattr(plane, "fields", counted)
+        monkeypatch.setattr(fields, "fields", counted)
         times, rng = 100 * np.geomspace(0.5, 20, 12), np.random.default_rng(5)
         whole = asked(times, 1e-2)
         for _ in range(2):
