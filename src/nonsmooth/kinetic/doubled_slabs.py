@@ -92,13 +92,12 @@ def fields(
     for left in reversed(range(doublings)):
         slab, seam = slab.doubled()
         seams.append(seam)
-        if math.isinf(thickness) and _opaque(slab, ones):
-            left = 0
-        if left <= halvings:
-            solved[left] = _solutions(slab, seams, ones, least / thin) / flow[:, None]
-        if left == 0:
+        opaque = math.isinf(thickness) and _opaque(slab, ones)
+        if opaque or left <= halvings:
+            solved[0 if opaque else left] = _solutions(slab, seams, ones, least / thin)
+        if opaque:
             break
-    found = [solved[k] for k in range(halvings + 1)]
+    found = [solved[k] / flow[:, None] for k in range(halvings + 1)]
     require_bounded(grid, found)
     return found
 

@@ -5,10 +5,9 @@ import pytest
 from scipy import special
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage import line, plane
+from nonsmooth.crossing.first_passage import line
 from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
-from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic import fields
+from nonsmooth.kinetic import case_modes, fields
 from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates
 from references import COLORED_FRICTION, FRICTION, GAMMA2, OBSTACLE, SKEWED, W_STAR
 

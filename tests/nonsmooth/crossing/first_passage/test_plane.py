@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage import plane
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.errors import ToleranceError
