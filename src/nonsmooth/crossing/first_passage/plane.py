@@ -231,22 +231,20 @@ class SharedGrids:
             grids = [grid]
             if self._change is not None:
                 grids.append(grid.changed(tuning.PLANE_TRANSFORM.changed))
-            found = [
-                self._solver.fields(one, z, self._length, least * way, self._halvings)
-                for one in grids
-            ]
+            solve = doubled_slabs.fields if self.nearly_parallel else fields.fields
+            found = [solve(one, z, self._length, least * way, self._halvings) for one in grids]
             self._known[key] = [np.hstack(of_half) for of_half in zip(*found, strict=True)]
         return self._known[key]
 
     @cached_property
-    def _solver(self):
-        """The module that solves at many depths: modes take the least time, but where they round.
+    def nearly_parallel(self) -> bool:
+        """Whether modes of all ordinates are: rounding, seen on the coarsest grid, grows on others.
 
-        Finer grids round more than the coarsest.
+        Slabs are doubled then, which takes longer.
         """
         z = 1 / math.sqrt(self._times[0] * self._times[-1])
         rounded = fields.rounding(self.grid(0, 0), z, self._length)
-        return fields if rounded < tuning.PLANE_TRANSFORM.rounding else doubled_slabs
+        return not rounded < tuning.PLANE_TRANSFORM.rounding
 
     def _shifts(self, refined):
         """Real z, of the sizes of the inverse times; of a basis that is `refined` so many times."""
@@ -299,6 +297,8 @@ class PlaneProblem(LaplaceProblem):
     @property
     def resolutions(self) -> tuple[Part, ...]:
         """Those of the grid in both variables, of the basis, and of a contour."""
+        if self.grids.nearly_parallel:
+            return tuning.PARALLEL_PARTS
         driven = self.scene.noise.driven
         (other,) = set(self.grids.ends) - {driven}
         # of oscillations: the widths of the box are so many standard deviations

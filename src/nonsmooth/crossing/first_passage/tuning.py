@@ -354,14 +354,17 @@ STEPPED_PARTS = (
     Part(1, 4, 1, 0.1),
     Part(1, 5, 1, 0.1, beyond=1 / 3),
 )
-# driven and other variable of the grid, basis, contour. Changes by contours fall fast: to an eighth
-# was seen, so that half of one is more than what is left. Those by bases are irregular
+# driven and other variable of the grid, basis, contour. Changes by the last two fall fast: to a
+# twentieth and to an eighth were seen of those by the basis, so that half of one is more than what
+# is left
 PLANE_PARTS = (
     Part(2, 6, 1, 0.05, True),
     Part(2, 6, 1, 0.3, True),
-    Part(0, 2, 1, 0.3),
+    Part(0, 2, 1, 0.3, counted=0.5),
     Part(1, 4, -1, counted=0.5),
 )
+# where modes are nearly parallel, changes by the basis are irregular
+PARALLEL_PARTS = (*PLANE_PARTS[:2], Part(0, 2, 1, 0.3), PLANE_PARTS[3])
 # Hermite polynomials and their elements converge slowly, and irregularly, if the damping is less
 # than this share of the rate of oscillations
 HARDLY_DAMPED = 0.2  # chosen
