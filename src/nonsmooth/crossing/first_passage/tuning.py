@@ -125,7 +125,7 @@ class Refinement:
     # fitted: rounding error of a survival probability for each relaxation time, found by comparison
     # with the corrected formula of order 2 for slow crossings. It is larger without symmetry, where
     # `case_modes` does not treat the slow mode apart.
-    rounding: float = 5e-13
+    rounding: float = 1e-13
     rounding_odd: float = 1e-14
     # fitted: benchmarks/crossing_honesty.py; factor on the difference of two levels, above 1 where
     # levels converge irregularly
