@@ -363,8 +363,8 @@ PLANE_PARTS = (
     Part(0, 2, 1, 0.3, counted=0.5),
     Part(1, 4, -1, counted=0.5),
 )
-# Where modes are nearly parallel, the first basis is off by up to 3e-5, irregularly; the second, which
-# is compared with it, by a tenth of that
+# Where modes are nearly parallel, the first basis is off by up to 3e-5, irregularly; the second,
+# which is compared with it, by a tenth of that
 PARALLEL_PARTS = (*PLANE_PARTS[:2], Part(1, 3, -1, 0.3, counted=0.5), PLANE_PARTS[3])
 # Hermite polynomials and their elements converge slowly, and irregularly, if the damping is less
 # than this share of the rate of oscillations
