@@ -108,7 +108,8 @@ def test_doubling_keeps_bases_small_where_modes_are_nearly_parallel():
         SharedGrids(one, np.array([[-1.0, 1.0]]), np.array([8.0]))
         for one in (scene, COLORED_FRICTION)
     )
-    assert grids.nearly_parallel and not others.nearly_parallel
+    assert grids.nearly_parallel
+    assert not others.nearly_parallel
     coarse, fine = (grids.ordinates(level, level, 0) for level in (0, 2))
     assert fine.basis.shape[1] < 1.5 * coarse.basis.shape[1]
     depth, shifts = 0.02 * fine.grid.way, (0.4, 0.6, 0.9, 1.2)
