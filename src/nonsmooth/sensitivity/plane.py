@@ -63,16 +63,16 @@ def logarithmic_derivative(
     together = Together(scene, np.array([levels]), times, _change(question, parameter))
     early = together.early[0]
     value, error = np.zeros(len(times)), np.full(len(times), np.inf)
-    by_steps = of_first_passage.STEPPED_PARTS, _by_steps
-    by_contours = together.problem(0, times).resolutions, _by_contours
-    for here, parts, solver in ((early, *by_steps), (early, *by_contours), (~early, *by_contours)):
+    by_steps, by_contours = (_by_steps, of_first_passage.STEPPED_PARTS), (_by_contours, None)
+    for here, solver, parts in ((early, *by_steps), (early, *by_contours), (~early, *by_contours)):
         if not np.any(error[here] > tol):
             continue
         grids = together.grids(tuple(times[here]))
         problem = _Problem(scene, *levels, times[here], grids, moves)
         # grids of extreme scenes may have no finite modes, or grow
         with suppress(UnstableError, np.linalg.LinAlgError), np.errstate(all="ignore"):
-            found, stated = _refined(problem, times[here], parts, solver, tol)
+            refined = parts or problem.resolutions
+            found, stated = _refined(problem, times[here], refined, solver, tol)
             if stated < np.max(error[here]):
                 value[here], error[here] = found, stated
     if np.any(error > tol):

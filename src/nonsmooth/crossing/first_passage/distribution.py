@@ -201,17 +201,19 @@ def _one_in_plane(together, row, tol):
     advice = "use method='monte_carlo'"
     reasons = [f"the solution is not finite; {advice}"]
 
-    def solve(here, parts, solver, at=None):
+    def solve(here, solver, parts=None, at=None):
         """Solve at some of the times; keep what has a smaller error than what is known.
 
-        `at` has the times of all intervals, if more than those of this one.
+        `parts` are those of contours unless given; `at` has the times of all intervals, if more
+        than those of this one.
         """
         if not here.any():
             return
         at = here if at is None else at
         problem = together.problem(row, times[at])
         try:
-            found, stated = _part_by_part(problem, times[at], parts, solver, tol)
+            refined = parts or problem.resolutions
+            found, stated = _part_by_part(problem, times[at], refined, solver, tol)
         except UnstableError as unstable:
             reasons.append(f"{unstable}; {advice}")
             return
@@ -224,15 +226,15 @@ def _one_in_plane(together, row, tol):
 
     whole = together.problem(row, times)
     early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
-    by_steps, by_contours = (tuning.STEPPED_PARTS, stepped), (whole.resolutions, inverted)
+    by_steps = stepped, tuning.STEPPED_PARTS
     solve(early, *by_steps)
-    solve(~early, whole.resolutions, together.inverted, together.later)
-    solve(early & np.isinf(error[0]), *by_contours)  # they are stable on more grids than steps
+    solve(~early, together.inverted, at=together.later)
+    solve(early & np.isinf(error[0]), inverted)  # they are stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
         solve(missed & ~late, *by_steps)
         if np.sum(missed & late) < np.sum(~early):  # without the times that are worst
-            solve(missed & late, *by_contours)
+            solve(missed & late, inverted)
     if np.isinf(error).any():
         raise ToleranceError(reasons[-1])
     return _answer(whole, times, solution, error, tol)

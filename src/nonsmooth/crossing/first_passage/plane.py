@@ -28,6 +28,7 @@ from nonsmooth.kinetic.ordinates_plane import (
     plane_ordinates,
 )
 from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates, reduced
+from nonsmooth.refine import solvable
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 
@@ -243,7 +244,8 @@ class SharedGrids:
         Slabs are doubled then, which takes longer.
         """
         z = 1 / math.sqrt(self._times[0] * self._times[-1])
-        rounded = fields.rounding(self.grid(0, 0), z, self._length)
+        with solvable():
+            rounded = fields.rounding(self.grid(0, 0), z, self._length)
         return not rounded < tuning.PLANE_TRANSFORM.rounding
 
     def _shifts(self, refined):
