@@ -70,8 +70,8 @@ class Seam:
         return even, self.half @ (above - below) / 2
 
 
-# operations over k^3 of a doubling, and of the thin slab
-_DOUBLED, _THIN = 5.0, 12.0
+# fitted: operations of products that take as long as a doubling, and as the thin slab, over k^3
+_DOUBLED, _THIN = 10.0, 26.0
 
 
 def fields(
