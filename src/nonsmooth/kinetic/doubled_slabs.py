@@ -9,7 +9,7 @@ antisymmetric o = C e. With X^2 = O E and the thickness d of the slab,
 Twice the slab has the arithmetic mean of both in the place of C, the harmonic mean in that of T:
 the iteration of Denman and Beavers for square roots, Appl. Math. Comput. 2 (1976) 63-94. It is
 stable where modes are nearly parallel, and solutions would be small differences of large multiples
-of them; elsewhere modes take half of the time.
+of them; elsewhere modes take two thirds of the time.
 """
 
 import math

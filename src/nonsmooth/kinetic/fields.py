@@ -45,6 +45,8 @@ def fields(
     ------
     UnstableError
         If h, which is between 0 and 1, is much larger.
+    ToleranceError
+        If the limit of the `effort` does not cover it.
     """
     ordinates = unreduced(grid)
     eliminated = grid.eliminated(z)
