@@ -55,7 +55,13 @@ class Question:
         return replace(self, scene=self.scene.with_parameter(parameter, (1 + part) * value))
 
 
-def missed(parameter: str, tol: float, value: np.ndarray, error: np.ndarray) -> ToleranceError:
+def missed(
+    parameter: str,
+    tol: float,
+    value: np.ndarray,
+    error: np.ndarray,
+    bound: np.ndarray | None = None,
+) -> ToleranceError:
     """Return the refusal of a derivative whose error is above the tolerance.
 
     Parameters
@@ -64,13 +70,16 @@ def missed(parameter: str, tol: float, value: np.ndarray, error: np.ndarray) -> 
     tol : float
     value, error : numpy.ndarray, shape (k,)
         Its `result`.
+    bound : numpy.ndarray, shape (k,), optional
+        What the tolerance bounds, if that is not the error itself.
 
     Returns
     -------
     ToleranceError
     """
+    worst = np.max(error if bound is None else bound)
     return ToleranceError(
-        f"the derivative by {parameter} has an error of {error.max():.1e} times the parameter, "
+        f"the derivative by {parameter} has an error of {worst:.1e} times the parameter, "
         f"above tol = {tol:g}; loosen tol",
         (value, error),
     )

@@ -48,25 +48,27 @@ def logarithmic_derivative(
     order = registry.scheme(question.scene).weak_order(question.scene)
     apart: float = tuning.COMMON_NOISE.apart
     own: int | tuple = labelled(seed, "pilot")
-    share = MONTE_CARLO.spread_share * tol
+    aim = tuning.COMMON_NOISE.aim * tol
+    share = MONTE_CARLO.spread_share * aim
     for _ in range(crossing_tuning.COUNTING.attempts + 1):
         found = _sample(question, parameter, apart, Sampling(step, paths, own, threads=threads))
         value, spread, biases, unsure = found
         error = np.abs(biases).sum(axis=0) + np.hypot(spread, unsure)
-        sure = MONTE_CARLO.sigmas * np.max(spread) <= share
-        if np.all(np.abs(biases).sum(axis=0) + MONTE_CARLO.sigmas * spread <= tol):
+        bound = np.abs(biases).sum(axis=0) + MONTE_CARLO.sigmas * spread
+        if np.all(bound <= tol):
             return value, error
-        if not sure:
-            wanted = paths_for(np.max(spread) * np.sqrt(paths), tol)
-            paths = BLOCK * -(-max(wanted, paths) // BLOCK)
         by_step, by_difference = np.max(np.abs(biases), axis=1)
         step = refined_step(step, max(2 * by_step, 1e-300), tol - share, order)
-        apart *= min(1.0, np.sqrt((tol - share) / max(2 * by_difference, 1e-300)))
-        apart, own = max(apart, tuning.COMMON_NOISE.nearest), seed
-        told = f"the derivative by {parameter} has an error of {np.max(error):.1e}"
+        nearer = apart * min(1.0, np.sqrt((tol - share) / max(2 * by_difference, 1e-300)))
+        nearer = max(nearer, tuning.COMMON_NOISE.nearest)
+        # of nearer questions fewer paths answer differently: the variance grows like 1 / apart
+        wanted = paths_for(np.max(spread) * np.sqrt(paths * apart / nearer), aim)
+        paths = BLOCK * -(-max(wanted, paths) // BLOCK)
+        apart, own = nearer, seed
+        told = f"the derivative by {parameter} has an error of {np.max(bound):.1e}"
         steps = 12 * question.times[-1] / step
         require_possible(paths, steps, told, tol, result=(value, error))
-    raise missed(parameter, tol, value, error)
+    raise missed(parameter, tol, value, error, bound)
 
 
 def _sample(question, parameter, apart, sampling):

@@ -70,6 +70,9 @@ class CommonNoise:
 
     apart: float = 0.1  # chosen: first part of the parameter by which it is changed
     nearest: float = 0.01  # chosen: smallest part; few paths tell smaller ones apart
+    # chosen: part of the tolerance for which paths are counted: the two biases are known to half a
+    # standard error each, which takes most of the rest
+    aim: float = 0.8
 
 
 GAMMA2 = Gamma2()

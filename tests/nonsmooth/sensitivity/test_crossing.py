@@ -1,11 +1,15 @@
 """Derivatives of crossing probabilities against scaling laws, closed forms and each other."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import nonsmooth as ns
+from nonsmooth.crossing.tuning import COUNTING
 from nonsmooth.errors import SceneError, ToleranceError
-from nonsmooth.sensitivity import differences, first_passage
+from nonsmooth.sensitivity import differences, first_passage, sampled
 from nonsmooth.sensitivity.questions import Question
 from references import FRICTION
 
@@ -75,9 +79,10 @@ def test_fronts_are_left_to_differences(monkeypatch):
             raise
 
     monkeypatch.setattr(first_passage, "logarithmic_derivative", noted)
-    run = ns.crossing_sensitivity(scene, 0.6, HORIZONS, "p", p=10.0, tol=1e-4)
+    horizon = np.array([0.5])
+    run = ns.crossing_sensitivity(scene, 0.6, horizon, "p", p=10.0, tol=1e-4)
     (refused,) = refusals
-    question = Question(scene, -0.6, 0.6, HORIZONS, 10.0)
+    question = Question(scene, -0.6, 0.6, horizon, 10.0)
     try:
         fine, bound = differences.logarithmic_derivative(question, "p", 3e-5)
     except ToleranceError as missed:  # on some processors
@@ -88,16 +93,16 @@ def test_fronts_are_left_to_differences(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tol", [0.5, 1e-3])
-def test_what_no_fit_follows_is_refused(tol):
+def test_what_no_fit_follows_is_refused():
     """With fronts, grids agreed on about 1 in the place of 0.04; the misfit of their fits tells."""
     scene = ns.Scene("friction", n=1000, observable="friction_force")
     question = Question(scene, -0.6, 0.6, np.array([2.0]), 10.0)
     fine, bound = differences.logarithmic_derivative(question, "p", 1e-4)
-    with pytest.raises(ToleranceError) as refused:
-        first_passage.logarithmic_derivative(question, "p", tol)
-    value, error = refused.value.result
-    assert np.all(np.abs(value - fine) <= error + bound)
+    for tol in (0.5, 1e-3):
+        with pytest.raises(ToleranceError) as refused:
+            first_passage.logarithmic_derivative(question, "p", tol)
+        value, error = refused.value.result
+        assert np.all(np.abs(value - fine) <= error + bound)
 
 
 def test_what_never_crosses_has_no_derivative():
@@ -186,6 +191,25 @@ def test_common_noise(parameter):
     )
     error = 5 * run["derivative_error"] + exact["derivative_error"]
     assert np.all(np.abs(run["derivative"] - exact["derivative"]) <= error)
+
+
+@pytest.mark.slow
+def test_nearer_questions_have_more_paths():
+    """With the paths that the first difference takes, these two samples were refused."""
+    question = Question(FRICTION.with_n(3), -0.6, 0.6, np.array([1.0, 3.0]), 1.0)
+    for seed in (1, 5):
+        _, error = sampled.logarithmic_derivative(question, "sigma", 0.05, seed, None)
+        assert np.all(error <= 0.05)
+
+
+def test_a_refusal_states_what_the_tolerance_bounds(monkeypatch):
+    """These are three standard errors and the biases, more than the error beside the value."""
+    monkeypatch.setattr(sampled.crossing_tuning, "COUNTING", replace(COUNTING, attempts=0))
+    with pytest.raises(ToleranceError) as refused:
+        ns.crossing_sensitivity(FRICTION, 0.6, [2.0], "p", method="monte_carlo", tol=0.03)
+    stated = float(re.search(r"an error of (\S+) times", str(refused.value)).group(1))
+    assert stated > 0.03
+    assert stated > refused.value.result["derivative_error"]
 
 
 @pytest.mark.slow
