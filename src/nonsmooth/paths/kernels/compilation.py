@@ -6,6 +6,9 @@ same time. Machine code is cached on disk. Numba's own cache notices a change of
 a kernel, but not of the files that the kernel calls into. The cache folder is therefore named after
 the content of the rooms that kernels are made of, and its parts after packages, so that copies of
 the library share one cache.
+
+Loops have the widest vectors that the processor has. LLVM prefers half of them on some processors
+with AVX-512, for the sake of programs that use them rarely; kernels hardly do anything else.
 """
 
 import hashlib
@@ -20,6 +23,7 @@ import numba
 import platformdirs
 from numba.core import event
 from numba.core.caching import UserProvidedCacheLocator
+from numba.core.codegen import get_host_cpu_features
 
 from nonsmooth.progress import begin
 
@@ -50,6 +54,21 @@ def _cache_folder() -> str:
 _CACHE = _cache_folder()
 
 
+def _features() -> str | None:
+    """Return what code may use of the processor, or nothing where the default is right.
+
+    That of the environment variable NUMBA_CPU_FEATURES comes first.
+    """
+    wanted: Any = numba.config
+    if wanted.CPU_FEATURES is not None:
+        return str(wanted.CPU_FEATURES)
+    features = get_host_cpu_features()
+    return f"{features},-prefer-256-bit" if "+avx512f" in features.split(",") else None
+
+
+_FEATURES = _features()
+
+
 class ByPackage(UserProvidedCacheLocator):
     """Finds machine code by the package of its source, wherever the library lies."""
 
@@ -64,17 +83,18 @@ class ByPackage(UserProvidedCacheLocator):
 
 def kernel(function: Callable, forceinline: bool = False) -> Callable:
     """Compile a function to machine code when it is first called."""
-    # Numba reads its settings when a function is decorated. They are restored for other users of
-    # numba.
+    # Numba reads its settings when a function is decorated, the features when the first one is.
+    # They are restored for other users of numba.
     config: Any = numba.config
-    of_others = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
+    of_others = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES, config.CPU_FEATURES
     config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = _CACHE, f"{__name__}.{ByPackage.__name__}"
+    config.CPU_FEATURES = _FEATURES
     try:
         return numba.njit(
             function, cache=bool(_CACHE), nogil=True, error_model="numpy", forceinline=forceinline
         )
     finally:
-        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = of_others
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES, config.CPU_FEATURES = of_others
 
 
 def inlined(function: Callable) -> Callable:

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from numba.core.codegen import get_host_cpu_features
 
 from support import ROOT
 
@@ -23,6 +24,16 @@ import numpy as np
 from nonsmooth.paths.kernels.panel import flush
 flush(np.zeros((20, 1)), np.zeros((20, 1)), 1)
 print(sum(flush.stats.cache_hits.values()))
+"""
+
+DRAWN = """
+import numba
+import numpy as np
+from nonsmooth.paths.kernels.random_numbers import normals
+words, out = np.arange(400, dtype=np.uint32).reshape(4, 100), np.zeros((2, 100), np.float32)
+normals(words, out, 100)
+(code,) = normals.inspect_asm().values()
+print("%zmm" in code, numba.config.CPU_FEATURES is None, out.tobytes().hex())
 """
 
 
@@ -85,3 +96,12 @@ def test_copies_of_the_library_share_what_they_compiled(library, tmp_path):
     kept = str(tmp_path / "kept")
     hits = [run(folder, OF_THE_LIBRARY, NUMBA_CACHE_DIR=kept).stdout for folder in (library, twin)]
     assert hits == ["0\n", "1\n"]
+
+
+@pytest.mark.skipif("+avx512f" not in get_host_cpu_features(), reason="has narrower vectors")
+def test_vectors_are_as_wide_as_can_be_and_change_no_bit(library):
+    """What others compile is left alone, and NUMBA_CPU_FEATURES is respected."""
+    widest, unset, drawn = run(library, DRAWN).stdout.split()
+    assert (widest, unset) == ("True", "True")
+    narrow = run(library, DRAWN, NUMBA_CPU_FEATURES=get_host_cpu_features() + ",-avx512f")
+    assert narrow.stdout.split() == ["False", "False", drawn]
