@@ -23,6 +23,7 @@ from nonsmooth.crossing.first_passage.distribution import default_tolerance
 from nonsmooth.crossing.probability import crossing_probability, require_options
 from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.linear_algebra.effort import limited
+from nonsmooth.paths.resolution import paths_for
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.reliability import tuning
 from nonsmooth.reliability.reach import typical_reach, typical_time
@@ -77,8 +78,8 @@ def crossing_threshold(
         As for `crossing_probability`.
     tol : float, optional
         Absolute error wanted of W, as for `crossing_probability`. Unless given, it is at most a
-        tenth of P and of 1 - P; and where the deterministic method of two variables would take
-        longer than a minute or so, paths are counted.
+        tenth of P and of 1 - P, for each P by itself; and where the deterministic method of two
+        variables would take longer than a minute or so, paths are counted.
 
     Returns
     -------
@@ -118,12 +119,12 @@ def crossing_threshold(
 
     pairs = [(P, T) for P in targets for T in horizons]
 
-    def values(x, tol, column):
-        run = ask(np.outer(x, shape), horizons[column], tol)
+    def values(x, tol, column, paths=None):
+        run = ask(np.outer(x, shape), horizons[column], tol, paths)
         return [run.isel(horizon=k) for k in range(run.sizes["horizon"])]
 
-    def curves(x, tol):
-        found = values(x, tol, slice(None))
+    def curves(x, tol, paths):
+        found = values(x, tol, slice(None), paths)
         return [found[k] for _ in targets for k in range(len(horizons))]
 
     def curve(k, x, tol):
@@ -213,8 +214,8 @@ def failure_time(
             )
         return guessed, 2 * power * typical_reach(scene, time, equal, seed, threads)[1]
 
-    def curves(x, tol):
-        return [ask(pair, x, tol).isel(threshold=0)] * len(targets)
+    def curves(x, tol, paths=None):
+        return [ask(pair, x, tol, paths).isel(threshold=0)] * len(targets)
 
     def curve(_, x, tol):
         return curves(x, tol)[0]
@@ -255,17 +256,27 @@ class _Question:
         self._answers: dict[tuple, xr.Dataset] = {}
         self.attributes: dict = {}
 
-    def __call__(self, levels: np.ndarray, horizons: np.ndarray, tol: float | None) -> xr.Dataset:
-        """Return W, computed once; the refusal of a tolerance is noted."""
-        key = levels.tobytes(), horizons.tobytes(), tol, self._given.get("method")
+    def __call__(
+        self,
+        levels: np.ndarray,
+        horizons: np.ndarray,
+        tol: float | None,
+        paths: int | None = None,
+    ) -> xr.Dataset:
+        """Return W, computed once; the refusal of a tolerance is noted.
+
+        A number of paths that is given to all questions comes before `paths`.
+        """
+        key = levels.tobytes(), horizons.tobytes(), tol, paths, self._given.get("method")
         if key not in self._answers:
-            self._answers[key] = self._asked(levels, horizons, tol)
+            wanted = {"tol": tol, "paths": paths}
+            asked = {k: v for k, v in wanted.items() if v is not None} | self._given
+            self._answers[key] = self._asked(levels, horizons, asked)
         return self._answers[key]
 
-    def _asked(self, levels, horizons, tol):
-        wanted: dict[str, Any] = {} if tol is None else {"tol": tol}
+    def _asked(self, levels, horizons, asked):
         try:
-            found = crossing_probability(self._scene, levels, horizons, **self._given, **wanted)
+            found = crossing_probability(self._scene, levels, horizons, **asked)
         except ToleranceError as refused:
             self._refusal = str(refused)
             if not isinstance(refused.result, xr.Dataset):
@@ -276,13 +287,13 @@ class _Question:
         self.attributes = found.attrs | {"method": ", ".join(methods)}
         return found
 
-    def tolerance(self, targets: list[float]) -> float | None:
-        """Tolerance of W, unless it is given; None for methods that take none."""
+    def tolerance(self, target: float) -> float | None:
+        """Tolerance of W near a target, unless it is given; None for methods that take none."""
         if self._given.get("method") in ("asymptotic", "corrected"):
             return self._tol
         if self._tol is not None:
             return self._tol
-        share = tuning.SEARCH.share * min(min(P, 1 - P) for P in targets)
+        share = tuning.SEARCH.share * min(target, 1 - target)
         usual = default_tolerance(self._scene)
         sampled = usual is None or self._is_sampled()
         return min(share, MONTE_CARLO.tolerance if sampled or usual is None else usual)
@@ -304,22 +315,26 @@ class _Question:
     ) -> list[Root]:
         """Find where W takes the values `targets`.
 
-        By Monte Carlo all of them on the same paths, from `curves`, which returns W for each
-        target; otherwise one by one, from `curve`, which takes the number of the target. The
+        By Monte Carlo those of one tolerance on the same paths, from `curves`, which returns W for
+        each target; otherwise one by one, from `curve`, which takes the number of the target. The
         reference is W of Brownian motion.
         """
-        tol = self.tolerance(targets)
         # otherwise the method follows from the scene
         named = bool({"method", "order"} & self._given.keys())
         sampled = self._is_sampled() or (not named and default_tolerance(self._scene) is None)
         found, counted = None, np.inf
         try:
             if not sampled and not named:
-                sampled = curve(0, np.array(guesses[0][:1]), tol).attrs["method"] == SAMPLED
+                first = curve(0, np.array(guesses[0][:1]), self.tolerance(targets[0]))
+                sampled = first.attrs["method"] == SAMPLED
             if not sampled:
                 found = [
                     solved_root(
-                        partial(_one, partial(curve, k), tol), reference, target, guess, sense
+                        partial(_one, partial(curve, k), self.tolerance(target)),
+                        reference,
+                        target,
+                        guess,
+                        sense,
                     )
                     for k, (target, guess) in enumerate(zip(targets, guesses, strict=True))
                 ]
@@ -330,12 +345,43 @@ class _Question:
             counted = tuning.COUNTED
         if found is None:
             self._given["method"] = SAMPLED
-            wanted = self.tolerance(targets)
-            assert wanted is not None  # only formulas take none
-            found = _on_grids(curves, targets, guesses, sense, min(counted, wanted))
+            found = self._counted(curves, targets, guesses, sense, counted)
         if self._refusal is not None:
             raise ToleranceError(self._refusal, found)
         return found
+
+    def _counted(self, curves, targets, guesses, sense, most):
+        """Invert sampled probabilities, with the same paths for targets of the same tolerance."""
+        wanted = [min(most, self.tolerance(target)) for target in targets]
+        if "paths" in self._given:
+            wanted = [min(wanted)] * len(targets)
+        found: dict[int, Root] = {}
+        for tol in set(wanted):
+            places = [k for k, own in enumerate(wanted) if own == tol]
+
+            def some(x, tol, paths, places=places):
+                every = curves(x, tol, paths)
+                return [every[k] for k in places]
+
+            part = [targets[k] for k in places], [guesses[k] for k in places]
+            self._require_possible(part[0], tol)
+            found |= zip(places, _on_grids(some, *part, sense, tol), strict=True)
+        return [found[k] for k in range(len(targets))]
+
+    def _require_possible(self, targets, tol):
+        """Refuse what would take too many paths."""
+        needed = paths_for(_deviation(targets), tol)
+        if needed > tuning.GRID.most_paths and "paths" not in self._given:
+            raise ToleranceError(
+                f"W = {min(targets, key=lambda P: min(P, 1 - P)):g} to {tol:.1g} would take Monte "
+                f"Carlo {needed:.0e} paths; choose a likelier crossing or a larger tol, or "
+                "method='corrected'"
+            )
+
+
+def _deviation(targets):
+    """Return the largest standard deviation of what a path tells of W at the targets."""
+    return max(np.sqrt(P * (1 - P)) for P in targets)
 
 
 def _one(curve, tol, x):
@@ -348,18 +394,24 @@ def _values(run):
 
 
 def _on_grids(curves, targets, guesses, sense, tol):
-    """Invert sampled probabilities on a rough grid around guesses, then on a fine one."""
+    """Invert sampled probabilities on a rough grid around guesses, then on a fine one.
+
+    There are as many paths as the tolerance takes at the targets. Elsewhere on a grid, where W is
+    near 1/2, it would take far more.
+    """
     grid = tuning.GRID
+
+    def sampled(tol):
+        return partial(curves, tol=tol, paths=paths_for(_deviation(targets), tol))
+
     spread = grid.rough_factor
     spans = [(x / spread, x * spread) for x, _ in guesses]
-    rough = _inverted(
-        partial(curves, tol=grid.rough_tolerance * tol), targets, spans, grid.rough_values, sense
-    )
+    rough = _inverted(sampled(grid.rough_tolerance * tol), targets, spans, grid.rough_values, sense)
     spans = []
     for root in rough:
         more = (root.upper / root.lower) ** grid.margin
         spans.append((root.lower / more, root.upper * more))
-    return _inverted(partial(curves, tol=tol), targets, spans, grid.values, sense)
+    return _inverted(sampled(tol), targets, spans, grid.values, sense)
 
 
 def _inverted(curves, targets, spans, count, sense):

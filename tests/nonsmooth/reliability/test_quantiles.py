@@ -6,6 +6,7 @@ from scipy import optimize
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.reliability import quantiles
 from nonsmooth.reliability.reach import typical_time
 from references import FRICTION, GAMMA2
 
@@ -57,6 +58,30 @@ def test_sampled_threshold_and_time_agree_with_the_deterministic_ones():
     solved = 4.630412  # by the deterministic method
     assert median["lower"] < solved < median["upper"]
     assert abs(float(median["time"][0]) - solved) < 4 * float(median["time_error"][0])
+
+
+def test_paths_are_counted_for_what_is_asked(monkeypatch):
+    """A rare crossing takes many, a likely one few: not what W = 1/2 to a tenth of 0.01 takes.
+
+    That would be four million, for levels between those of two times.
+    """
+    taken, solve = [], quantiles.crossing_probability
+
+    def noted(*question, paths, **options):
+        taken.append(paths)
+        return solve(*question, paths=paths, **options)
+
+    asked = {"probability": [0.01, 0.4], "horizons": [2.0, 4.0], "p": 2.0}
+    exact = ns.crossing_threshold(FRICTION, **asked, method="corrected", order=3)
+    monkeypatch.setattr(quantiles, "crossing_probability", noted)
+    sampled = ns.crossing_threshold(FRICTION, **asked, method="monte_carlo", seed=4)
+    # 16 P (1 - P) / tol^2, three standard errors within three quarters of the tolerance
+    assert max(taken) == pytest.approx(16 * 0.01 * 0.99 / 0.001**2, rel=1e-3)
+    assert sorted(taken)[-2] == pytest.approx(16 * 0.4 * 0.6 / 0.01**2, rel=1e-3)
+    assert np.all(sampled["lower"] < exact["upper"])
+    assert np.all(exact["lower"] < sampled["upper"])
+    with pytest.raises(ToleranceError, match=r"would take Monte Carlo 2e\+09 paths"):
+        ns.crossing_threshold(FRICTION, 1e-6, 2.0, method="monte_carlo")
 
 
 def test_scenes_without_solver_are_sampled():
