@@ -356,7 +356,7 @@ class _Question:
         if "paths" in self._given:
             wanted = [min(wanted)] * len(targets)
         found: dict[int, Root] = {}
-        for tol in set(wanted):
+        for tol in sorted(set(wanted), reverse=True):
             places = [k for k, own in enumerate(wanted) if own == tol]
 
             def some(x, tol, paths, places=places):
