@@ -364,24 +364,26 @@ class _Question:
                 return [every[k] for k in places]
 
             part = [targets[k] for k in places], [guesses[k] for k in places]
-            self._require_possible(part[0], tol)
+            if "paths" not in self._given:
+                _require_possible(part[0], tol)
             found |= zip(places, _on_grids(some, *part, sense, tol), strict=True)
         return [found[k] for k in range(len(targets))]
 
-    def _require_possible(self, targets, tol):
-        """Refuse what would take too many paths."""
-        needed = paths_for(_deviation(targets), tol)
-        if needed > tuning.GRID.most_paths and "paths" not in self._given:
-            raise ToleranceError(
-                f"W = {min(targets, key=lambda P: min(P, 1 - P)):g} to {tol:.1g} would take Monte "
-                f"Carlo {needed:.0e} paths; choose a likelier crossing or a larger tol, or "
-                "method='corrected'"
-            )
+
+def _paths(targets, tol):
+    """Count the paths that tell W to the tolerance where it is one of the targets."""
+    return max(paths_for(np.sqrt(P * (1 - P)), tol) for P in targets)
 
 
-def _deviation(targets):
-    """Return the largest standard deviation of what a path tells of W at the targets."""
-    return max(np.sqrt(P * (1 - P)) for P in targets)
+def _require_possible(targets, tol):
+    """Refuse what would take too many paths."""
+    needed = _paths(targets, tol)
+    if needed > tuning.GRID.most_paths:
+        raise ToleranceError(
+            f"W = {min(targets, key=lambda P: min(P, 1 - P)):g} to {tol:.1g} would take Monte "
+            f"Carlo {needed:.0e} paths; choose a likelier crossing or a larger tol, or "
+            "method='corrected'"
+        )
 
 
 def _one(curve, tol, x):
@@ -402,7 +404,7 @@ def _on_grids(curves, targets, guesses, sense, tol):
     grid = tuning.GRID
 
     def sampled(tol):
-        return partial(curves, tol=tol, paths=paths_for(_deviation(targets), tol))
+        return partial(curves, tol=tol, paths=_paths(targets, tol))
 
     spread = grid.rough_factor
     spans = [(x / spread, x * spread) for x, _ in guesses]
