@@ -39,10 +39,11 @@ def leading_is_quicker(
         return False  # counting takes no time, whatever the probability is
     with suppress(SceneError):  # int g does not spread like a Brownian motion
         guide = poisson.fitted(scene, coarse_step(scene) / 2, 0)
-        centres = guide.mean * np.sqrt(p) * horizons[-1]
+        centres = guide.mean * np.sqrt(p) * horizons[-1] + guide.ahead / np.sqrt(p)
         lower, upper = (thresholds - centres).T / guide.gamma
-        inside = (lower < 0) & (upper > 0)
-        W = np.where(inside, brownian_crossing(np.maximum(upper, 1e-300), horizons[-1], lower), 1.0)
+        if np.any((lower >= 0) | (upper <= 0)):
+            return False  # paths reach a threshold in the mean
+        W = brownian_crossing(upper, horizons[-1], lower)
         counted = max(fewest, *(paths_for(np.sqrt(w * (1 - w)), tol) for w in W))
         led = [chosen.least_led + paths_for(chosen.spread_led * w, tol) for w in W]
         return chosen.dearer * sum(led) < counted

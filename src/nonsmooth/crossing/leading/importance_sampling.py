@@ -169,10 +169,11 @@ class _Request:
         step = coarse_step(self.scene) / 2 if self.step is None else self.step
         last, paths, fault = size - 1, 0, None
         while last >= 0:
-            courses = [self.course(side, last) for side in self.sides(last)]
-            if any(course is None for course in courses):
+            led = {side: self.course(side, last) for side in self.sides(last)}
+            if any(led[side] is None for side in self.likely(last, self.guide.ahead)):
                 fault = fault or self.out_of_reach(last)
                 break
+            courses = [course for course in led.values() if course is not None]
             sums, (bias, bias_error), step, used = self.sampled(courses, last, step)
             paths = max(paths, used)
             served = self.served(sums)
@@ -238,14 +239,22 @@ class _Request:
         return self.scene.is_odd() and self.levels[0] == -self.levels[1] and not self.scene.start
 
     def sides(self, last):
-        """Return the sides to which paths are led; one that hardly any path reaches is left out."""
+        """Return the sides to which paths are led; one that hardly any path reaches is left out.
+
+        Early on the start has taken int g only a part of the way that it does in the long run.
+        """
+        return sorted(self.likely(last, 0.0) | self.likely(last, self.guide.ahead))
+
+    def likely(self, last, ahead):
+        """Sides that are not far less probable than the other, if int g is so far ahead."""
         if self.mirrored:
-            return [1]
+            return {1}
         time = self.times[last]
-        away = np.abs(np.array(self.levels) - self.guide.mean * time)
-        log = scipy.special.log_ndtr(-away / (self.guide.gamma * math.sqrt(time)))
+        left = np.array([-1, 1]) * (np.array(self.levels) - self.guide.mean * time - ahead)
+        spread = self.guide.gamma * math.sqrt(time)
+        log = scipy.special.log_ndtr(-np.maximum(left, 0.0) / spread)
         far = log < log.max() + math.log(tuning.WEIGHTS.other_side)
-        return [side for side, left_out in zip((-1, 1), far, strict=True) if not left_out]
+        return {side for side, left_out in zip((-1, 1), far, strict=True) if not left_out}
 
     def course(self, side, last):
         """Fit a guide to a level, by way of nearer ones if too few paths reach it at once."""

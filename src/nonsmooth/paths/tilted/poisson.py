@@ -58,6 +58,7 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     compile_march(s, panel)
     rows, factor = state_rows(scene), float(s.factor[0])
     march(s, panel, BLOCK, count, *EVERYWHERE)
+    first = float(np.mean(panel.total[TOTAL_DELTA, :BLOCK]))
     degree = tuning.TILT.degrees[scene.dimension - 1]
     basis = polynomials(scene, degree, panel.data[rows, :BLOCK].astype(float), chosen.margin)
     used = np.flatnonzero(basis.degrees % 2 == 1 if scene.is_odd() else basis.degrees > 0)
@@ -96,4 +97,5 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     coefficients[0, used] = own
     np.add.at(coefficients[1], lower, own * times * factor / np.sqrt(step))
     mean = 0.0 if scene.is_odd() else weights[-1] / (count * step)
-    return Guide(basis, coefficients, float(mean), float(np.sqrt(gamma2)))
+    ahead = 0.0 if scene.is_odd() and not scene.start else first - mean * count * step
+    return Guide(basis, coefficients, float(mean), float(np.sqrt(gamma2)), ahead)

@@ -93,6 +93,8 @@ class Guide:
         Of u and of P_1 to P_4.
     mean, gamma : float
         The stationary mean of g and the root of gamma^2.
+    ahead : float
+        By how much the start takes int g farther than the mean does, in the long run.
     kappa : float
         By how much the level seems to be farther away.
     """
@@ -101,6 +103,7 @@ class Guide:
     coefficients: np.ndarray
     mean: float
     gamma: float
+    ahead: float = 0.0
     kappa: float = 0.0
 
     def towards(self, aim: Aim, precision: str = "float32") -> Tilt:
