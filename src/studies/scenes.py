@@ -24,7 +24,6 @@ QUANTITIES = {
     "ground_damping_ratio": "1",
 }
 LIMITS = {"friction": "slip_force", "elasto_plastic": "yield_force", "obstacle": "gap"}
-_MODELS = {name: model for model, name in LIMITS.items()}
 # observables of structures: the formula, and what it is
 OBSERVABLES = {
     "friction": {"velocity": "y", "displacement": "x", "friction_force": "friction_force"},

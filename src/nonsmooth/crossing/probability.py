@@ -90,9 +90,10 @@ def crossing_probability(
           drift, and white or Langevin noise. For these scenes it is chosen, with three
           exceptions: a parameter of another method is given; or `tol` is so loose that
           ``"monte_carlo"`` should be faster or, for one variable and odd g, that ``"corrected"``
-          meets it; or p is so large that ``"corrected"`` should meet `tol` (above 1e7 for one
-          variable, where the solver rounds, and above 10 / `tol` for two). If no `tol` is given, it
-          ends after about a minute with what it has, or leaves the answer to ``"monte_carlo"``.
+          meets it; or p is so large that ``"corrected"`` should meet `tol` (above 10 / `tol` for
+          two variables; for one if the last time is above 1e7 relaxation times, where the solver
+          rounds). If no `tol` is given, it ends after about a minute with what it has, or leaves the answer
+          to ``"monte_carlo"``.
         - ``"monte_carlo"`` counts paths. It is chosen for all other scenes, and where the
           deterministic method misses a tolerance that is loose enough for counting.
         - ``"importance_sampling"`` leads paths to the threshold and weights them, for rare
@@ -143,8 +144,9 @@ def crossing_probability(
           probability is `survival` with `survival_error`, for one variable to relative accuracy.
         - ``"corrected"``: a bound, from the size of the next orders and the errors of gamma^2 and
           kappa. It is the trivial one for a g that grows faster than the theorems allow.
-        - ``"asymptotic"``: a bound, by the corrected formula of the highest order; the trivial one
-          where there is none. What W_star inherits from gamma^2 alone is `limit_error`.
+        - ``"asymptotic"``: a bound, by the corrected formula, of the highest order for one variable
+          and of order 1 for others; the trivial one where there is none. What W_star inherits from
+          gamma^2 alone is `limit_error`.
         - ``"monte_carlo"``: the bias of the time step and the standard error together, and `lower`
           and `upper` are 95 % confidence limits that account for both. The `standard_error` alone;
           and the bias, as measured by halving the step, `step_bias` with its standard error

@@ -192,8 +192,3 @@ def points(scene: Scene, grid: Grid) -> int:
     """Return the number of nodes of a grid."""
     axes = axes_of(scene, grid.ends, grid.levels, of_density=grid.of_density)
     return math.prod(len(axis.nodes) for axis in axes.values())
-
-
-def affordable(scene: Scene, grid: Grid) -> bool:
-    """Whether a grid is small enough to be solved on."""
-    return points(scene, grid) <= tuning.TENSOR_GRIDS.largest[len(grid.levels)]

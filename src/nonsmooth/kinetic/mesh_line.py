@@ -167,6 +167,6 @@ class _Widths:
         return (
             settings.crossing
             * self.scene.noise.sigma
-            * np.sqrt(distance / np.maximum(np.abs(flow), 1e-300))
+            * np.sqrt(distance / np.maximum(np.abs(flow), 1e-200))
             / share
         )

@@ -51,11 +51,20 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
             "returned, unchanged"
         )
     # near W = 1 the complement has more digits
-    survival = crossing.get("survival", 1 - W)
+    own = W >= 0.5 if "survival_error" in crossing else xr.zeros_like(W, dtype=bool)
+    survival, missed = crossing.get("survival", 1 - W), crossing.get("survival_error", error)
     beta = xr.where(W < 0.5, -ndtri(W), ndtri(survival))
     # where W is 0 or 1 itself, so is beta infinite, and its error
     with np.errstate(invalid="ignore"):
-        moved = [abs(-ndtri((W + sign * error).clip(0, 1)) - beta) for sign in (-1, 1)]
+        ends = [
+            xr.where(
+                own,
+                ndtri((survival - sign * missed).clip(0, 1)),
+                -ndtri((W + sign * error).clip(0, 1)),
+            )
+            for sign in (-1, 1)
+        ]
+        moved = [abs(end - beta) for end in ends]
     found = between_limits(
         {},
         W.dims,
@@ -64,8 +73,8 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
         (
             beta.values,
             np.maximum(*moved).fillna(np.inf).values,
-            -ndtri(upper.values),
-            -ndtri(lower.values),
+            xr.where(own, ends[1], -ndtri(upper)).values,
+            xr.where(own, ends[0], -ndtri(lower)).values,
         ),
         **crossing.attrs,
     )

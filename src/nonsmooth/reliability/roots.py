@@ -253,8 +253,10 @@ def root_on_grid(x: np.ndarray, values: Values, target: float, sense: int) -> Ro
     Returns
     -------
     Root
-        The limits are points of the grid, or 0 and inf if the grid ends before. The error is that
-        of W, over its slope.
+        The limits are points of the grid, or 0 and inf if the grid ends before, and with it the
+        root. The error is that of W, over its slope, and what the grid leaves open: as much of the
+        interval around the root as the slope changes, all of it where W jumps. Paths that arrive
+        together are told apart by rounding, which the limits allow for.
     """
     before, after = values.before(target, sense), values.after(target, sense)
     # limits of samples need not be monotone: the root is within the widest interval they allow
@@ -268,4 +270,20 @@ def root_on_grid(x: np.ndarray, values: Values, target: float, sense: int) -> Ro
     width = float(np.diff(x[near])[0])
     lower = float(x[first - 1]) if first > 0 else 0.0
     upper = float(x[last]) if last < len(x) else np.inf
-    return Root(value, error * width / change if change > 0 else np.inf, lower, upper)
+    rounding = tuning.SEARCH.counted_rounding
+    missed = error * width / change if change > 0 else np.inf
+    return Root(
+        value,
+        missed + _left_open(x, rising, value) + rounding * value,
+        lower * (1 - rounding),
+        upper * (1 + rounding),
+    )
+
+
+def _left_open(x, rising, value):
+    """By how much a root on a grid is unsure because the slope changes from point to point."""
+    place = int(np.clip(np.searchsorted(x, value), 2, len(x) - 2))
+    before, change, after = np.diff(rising[place - 2 : place + 2])
+    width = float(x[place] - x[place - 1])
+    turn = max(abs(change - before), abs(after - change))
+    return width * min(1.0, turn / change) if change > 0 else width

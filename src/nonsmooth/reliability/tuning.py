@@ -43,6 +43,7 @@ class Search:
     told: float = 1.0  # chosen: doubt from which on a guess of the slope is better
     wide: float = 10.0  # chosen: first step over the error, so that the slope is seen
     rounding: float = 1e-12  # derived: relative distance of roots that rounding cannot tell apart
+    counted_rounding: float = 1e-6  # derived: the same of counted paths, some roundings of float32
     most: int = 30  # chosen: a bisection from a factor of 10 has 1e-8 then
     margin: float = 1.2  # chosen: of the first limits, over what the slope at the root tells
     widest: float = 100.0  # chosen: factor from the root to a limit, beyond which there is none

@@ -187,7 +187,8 @@ class Hamiltonian:
             require_slope(self.H, self.energy, variable)
         angle = np.linspace(0, 2 * np.pi, tuning.FAR_OUT.directions, endpoint=False)
         far = tuning.FAR_OUT.distances
-        ends = np.outer(far, np.cos(angle)), np.outer(far, np.sin(angle))
+        # rounded, so that it does not grow along a ray on which it is constant but for rounding
+        ends = [np.outer(far, np.round(part(angle), 15)) for part in (np.cos, np.sin)]
         with np.errstate(all="ignore"):
             energy = vectorised(self.energy, (eta, zeta))(*ends)
             dissipation = vectorised(self.dissipation, (eta, zeta))(*ends)

@@ -119,6 +119,7 @@ class Scene:
                 f"noise is {quoted(self.noise)}; choose from {', '.join(noises.NAMES)}, or give a "
                 "noise object such as nonsmooth.White(sigma=0.5)"
             )
+        require_parameter("sigma", self.noise.sigma)
 
     def _check_numbers(self):
         if isinstance(self.n, str) and self.n.lower().startswith("inf"):

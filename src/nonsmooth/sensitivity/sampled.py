@@ -66,7 +66,7 @@ def logarithmic_derivative(
         paths = BLOCK * -(-max(wanted, paths) // BLOCK)
         apart, own = nearer, seed
         told = f"the derivative by {parameter} has an error of {np.max(bound):.1e}"
-        steps = 12 * question.times[-1] / step
+        steps = 6 * question.times[-1] / step
         require_possible(paths, steps, told, tol, result=(value, error))
     raise missed(parameter, tol, value, error, bound)
 

@@ -41,7 +41,7 @@ def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
     -------
     Estimate
         The error is the difference between two grids, at least a part of the difference before,
-        plus the effect of the finite box, plus rounding. From three grids on, the difference is
+        plus the effect of the finite box, plus rounding. From four grids on, the difference is
         multiplied by the square root of the factor by which differences shrink (the larger of the
         last two such factors, at most 1), because errors shrink like differences. With more than
         two variables, or n = inf and two, it is that of `combined_grids.combined`, three times that

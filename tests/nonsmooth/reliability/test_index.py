@@ -41,6 +41,24 @@ def test_where_the_survival_is_tiny_its_digits_are_kept():
     assert float(found["lower"][0]) == pytest.approx(stats.norm.isf(1e-9))
 
 
+def test_the_error_of_a_tiny_survival_is_its_own():
+    """Half of S = 1e-20 is far below the rounding of W = 1, whose limits tell nothing of it."""
+    data = {
+        "probability": [1.0],
+        "probability_error": [5e-21],
+        "survival": [1e-20],
+        "survival_error": [5e-21],
+        "lower": [1.0],
+        "upper": [1.0],
+    }
+    run = xr.Dataset({name: ("horizon", np.array(values)) for name, values in data.items()})
+    found = ns.reliability_index(run)
+    ends = stats.norm.ppf([5e-21, 1.5e-20])
+    assert np.allclose([found["lower"][0], found["upper"][0]], ends)
+    missed = np.abs(ends - stats.norm.ppf(1e-20)).max()
+    assert float(found["reliability_index_error"][0]) == pytest.approx(missed)
+
+
 def test_what_is_no_crossing_probability_is_refused():
     """The error is one line with the cure."""
     with pytest.raises(SceneError, match="crossing_probability has returned"):

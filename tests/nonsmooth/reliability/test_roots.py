@@ -109,3 +109,15 @@ def test_limits_on_a_grid(sense):
         root = root_on_grid(x, values, target, sense)
         assert inside(root, target, sense)
         assert root.upper / root.lower < 3
+
+
+@pytest.mark.parametrize("sense", [RISING, FALLING])
+def test_a_jump_is_within_the_error_on_a_grid(sense):
+    """W jumps from 0.02 to 0.3 between two points: what is asked in between is where it jumps."""
+    x, jump = np.geomspace(0.1, 3, 41), 0.7
+    W = np.where(sense * (x - jump) > 0, 0.3, 0.02) + 1e-3 * sense * np.log(x)
+    values = Values(W, np.full(len(x), 1e-4), W - 1e-4, W + 1e-4)
+    for target in (0.05, 0.15, 0.28):
+        root = root_on_grid(x, values, target, sense)
+        assert abs(root.value - jump) <= root.error
+        assert root.lower <= jump <= root.upper

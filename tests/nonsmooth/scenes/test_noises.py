@@ -145,3 +145,5 @@ def test_a_noise_of_another_kind_is_simulated():
     assert np.allclose(covariance, exact, atol=5 / np.sqrt(20_000) + 0.01)
     with pytest.raises(SceneError, match="monte_carlo"):
         ns.asymptotic_variance(ns.Scene("friction", Filtered()), method="deterministic")
+    with pytest.raises(SceneError, match="sigma is nan"):
+        ns.Scene("friction", Filtered(float("nan")))

@@ -37,7 +37,7 @@ def applies(scene: Scene) -> bool:
     """Whether the scene has two state variables, white or Langevin noise, odd g and drift."""
     return (
         scene.dimension == 2
-        and scene.noise.kind != "hamiltonian"
+        and scene.noise.kind in ("white", "langevin")
         and not math.isinf(scene.n)
         and scene.is_odd()
     )

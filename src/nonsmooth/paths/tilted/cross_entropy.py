@@ -90,7 +90,8 @@ def refitted(
     weights = np.concatenate([record.weight for record in kept])
     if not weights.sum() > 0:
         return guide, 0.0
-    effective = weights.sum() ** 2 / np.sum(weights**2)
+    even = weights / weights.max()  # squares of tiny weights are 0
+    effective = even.sum() ** 2 / np.sum(even**2)
     unit = effective / weights.sum()
     times = h * stride * np.arange(len(kept[0].delta))
     return _fit(scene, guide, prior, aim, kept, times, h, few, unit, effective), effective

@@ -108,6 +108,16 @@ def test_mirror_images_stand_for_the_other_side():
 
 
 @pytest.mark.slow
+def test_the_start_tells_the_likelier_side():
+    """From y = 3 most paths cross the farther level, which the Brownian limit from 0 leaves out."""
+    scene, levels = ns.Scene("friction", n=5, start={"y": 3.0}), (-4.0, 6.0)
+    led = sampled(scene, levels, [4.0], 1.0, seed=1)
+    exact = solved(scene, levels, [4.0], 1.0, 1e-9)
+    missed = abs(float(led.probability[0] - exact.probability[0]))
+    assert missed < LIMIT * float(led.standard_error[0]) + abs(float(led.step_bias[0]))
+
+
+@pytest.mark.slow
 def test_intervals_are_honest_where_the_step_is_long():
     """Forty 95 % intervals at W = 1e-2, with a bias of the step of twice the standard error.
 

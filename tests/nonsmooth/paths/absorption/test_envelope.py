@@ -15,6 +15,12 @@ def test_variance_of_each_step():
     assert np.allclose(found**2, exact, rtol=1e-9)
 
 
+def test_envelopes_may_jump_and_vary():
+    """A jump within a step, and three periods in one, are no pulses: means differ by less."""
+    for envelope in ("1 + sign(t - 0.53)", "abs(sin(200*t))", "sqrt(t)", "exp(-t)"):
+        assert np.all(scales(envelope, 0.0, 0.1, 10) >= 0)
+
+
 def test_constant():
     """A formula without t is a constant factor."""
     assert np.allclose(scales("0.5", 0.0, 0.1, 3), 0.5)
@@ -26,5 +32,8 @@ def test_refusals():
         scales("1 - t", 0.0, 0.1, 20)
     with pytest.raises(SceneError, match="give a formula that is moderate"):
         scales("exp(1e3*t)", 0.0, 0.1, 5)  # its square overflows
+    for unresolved in ("t**(-0.6)", "1/abs(t - 0.5)", "exp(-1e8*(t - 0.4513)**2)"):
+        with pytest.raises(SceneError, match="has a pole, or a pulse"):
+            scales(unresolved, 0.0, 0.1, 10)
     with pytest.raises(ExpressionError):
         scales("x", 0.0, 0.1, 20)
