@@ -1,8 +1,8 @@
 """Solutions of the kinetic equation of two state variables at many depths, for real z.
 
 The value at the start depends on what is left of the equation elsewhere by the solution of the
-adjoint equation with a source there (`Fields`). In a basis that has both, the error of that value is
-about the product of what is left out of either.
+adjoint equation with a source there (`Fields`). In a basis that has both, its error is about the
+product of what is left out of either.
 
 The modes of all ordinates solve (z - A) h = g d_x h in a slab exactly in x. On the nodes where g is
 small they decay so fast that rounding spoils the fastest of them; these only make up what is next
