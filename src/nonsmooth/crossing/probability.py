@@ -92,8 +92,8 @@ def crossing_probability(
           ``"monte_carlo"`` should be faster or, for one variable and odd g, that ``"corrected"``
           meets it; or p is so large that ``"corrected"`` should meet `tol` (above 10 / `tol` for
           two variables; for one if the last time is above 1e7 relaxation times, where the solver
-          rounds). If no `tol` is given, it ends after about a minute with what it has, or leaves the answer
-          to ``"monte_carlo"``.
+          rounds). If no `tol` is given, it ends after about a minute with what it has, or leaves
+          the answer to ``"monte_carlo"``.
         - ``"monte_carlo"`` counts paths. It is chosen for all other scenes, and where the
           deterministic method misses a tolerance that is loose enough for counting.
         - ``"importance_sampling"`` leads paths to the threshold and weights them, for rare

@@ -20,9 +20,9 @@ from scipy.linalg import lu_factor, lu_solve
 
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
-from nonsmooth.kinetic.fields import require_bounded
+from nonsmooth.kinetic.fields import both_directions, is_source, require_bounded
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
-from nonsmooth.kinetic.reduced_ordinates import unreduced
+from nonsmooth.kinetic.reduced_ordinates import Fields, unreduced
 from nonsmooth.linear_algebra.effort import spend
 
 
@@ -59,14 +59,25 @@ class Seam:
         Of the mean of what each slab does to antisymmetric and to symmetric solutions.
     half : numpy.ndarray, shape (k, k)
         Half of their difference.
+    transposed : bool
+        Whether the factors are those of the transposed mean.
     """
 
     factors: tuple
     half: np.ndarray
+    transposed: bool = False
+
+    def adjoint(self) -> "Seam":
+        """Seam of the adjoint equation."""
+        return Seam(self.factors, self.half.T, not self.transposed)
+
+    def solve(self, values: np.ndarray) -> np.ndarray:
+        """Apply the inverse of the mean."""
+        return lu_solve(self.factors, values, trans=self.transposed, check_finite=False)
 
     def values(self, below: np.ndarray, above: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return even and odd parts at it, from even parts at the outer faces."""
-        even = lu_solve(self.factors, self.half @ (below + above) / 2, check_finite=False)
+        even = self.solve(self.half @ (below + above) / 2)
         return even, self.half @ (above - below) / 2
 
 
@@ -75,8 +86,13 @@ _DOUBLED, _THIN = 10.0, 26.0
 
 
 def fields(
-    grid: PlaneOrdinates, z: float, thickness: float, least: float, halvings: int = 0
-) -> list[np.ndarray]:
+    grid: PlaneOrdinates,
+    z: float,
+    thickness: float,
+    least: float,
+    source: float,
+    halvings: int = 0,
+) -> list[Fields]:
     """Solve the kinetic equation in a slab, with h = 1 where the flow leaves.
 
     Parameters, results and what is raised are those of `kinetic.fields.fields`.
@@ -86,29 +102,35 @@ def fields(
     thin = least / tuning.DOUBLED_SLABS.parts
     doublings = tuning.DOUBLED_SLABS.most
     if math.isfinite(thickness):
-        doublings = halvings + max(1, math.ceil(math.log2(thickness / thin / 2.0**halvings)))
+        doublings = halvings + max(2, math.ceil(math.log2(thickness / thin / 2.0**halvings)))
         thin = thickness / 2.0**doublings
-    slab, seams, solved = _thin(grid, z, thin), [], {}
+    # in a half space the source is in the middle of a slab as thick as this, or up to half of it
+    nearest = max(2, math.floor(math.log2(2 * source / thin)))
+    ordinates, eliminated = unreduced(grid), grid.eliminated(z)
+    matrices, rows = ordinates.matrices(eliminated, ordinates.continued(eliminated))
+    slab, seams, solved = _thin(matrices, thin), [], {}
     for left in reversed(range(doublings)):
         slab, seam = slab.doubled()
         seams.append(seam)
         opaque = math.isinf(thickness) and _opaque(slab, ones)
-        if opaque or left <= halvings:
-            solved[0 if opaque else left] = _solutions(slab, seams, ones, least / thin)
+        half = left <= halvings
+        if half or len(seams) == nearest or (opaque and len(seams) < nearest):
+            sourced = _sourced(slab, seams, rows, least / thin)
+        if half or opaque:
+            solutions = _solutions(slab, seams, ones, least / thin)
+            solved[0 if opaque else left] = solutions, sourced
         if opaque:
             break
-    found = [solved[k] / flow[:, None] for k in range(halvings + 1)]
+    found = [Fields(*(part / flow[:, None] for part in solved[k])) for k in range(halvings + 1)]
     require_bounded(grid, found)
     return found
 
 
-def _thin(grid, z, thickness):
+def _thin(matrices, thickness):
     """Make a slab within which most solutions change little, by a fraction for tanh.
 
     tanh(a) = a (1 + a^2/15) / (1 + 2 a^2/5) up to a^7/1575.
     """
-    ordinates, eliminated = unreduced(grid), grid.eliminated(z)
-    matrices, _ = ordinates.matrices(eliminated, ordinates.continued(eliminated))
     even, odd = matrices[EVEN], matrices[ODD]
     spend(_THIN * len(even) ** 3)
     one, square = np.eye(len(even)), (thickness / 2) ** 2 * (odd @ even)
@@ -127,20 +149,56 @@ def _opaque(slab, ones):
 
 def _solutions(slab, seams, ones, least):
     """Solve a slab that was doubled at seams, up to its middle; depths are in first slabs."""
-    settings, doublings = tuning.DOUBLED_SLABS, len(seams) - 1
     at_face = np.linalg.solve(np.eye(len(ones)) + slab.symmetric, ones)
-    middle = seams[doublings].values(at_face, at_face)
-    found = {2.0**doublings: middle}
+    middle = seams[-1].values(at_face, at_face)
+    found = _between(seams[:-1], at_face, middle[0], (True, False), least)
+    # at the lower face the odd part points away from the slab
+    return _joined([(even, -odd) for even, odd in (*found, middle)])
+
+
+def _sourced(slab, seams, rows, least):
+    """Solve the adjoint equation with a source in the middle, from there to the upper face.
+
+    At the face the odd part is minus the even one; at the source even parts of functions have odd
+    parts that jump by their row, and odd parts even ones.
+    """
+    seams, found = [seam.adjoint() for seam in seams], []
+    least = min(least, 2.0 ** (len(seams) - 2))
+    one, half = np.eye(len(slab.symmetric)), seams[-1].half
+    both = rows[EVEN], rows[ODD]
+    if is_source(rows[EVEN], both):
+        source = rows[EVEN] / 2
+        at_face = np.linalg.solve(one + slab.symmetric.T, half @ seams[-1].solve(source))
+        at_source = seams[-1].solve(source + half @ at_face)
+        found += _between(seams[:-1], at_source, at_face, (True, True), least)
+    if is_source(rows[ODD], both):
+        at_source = rows[ODD] / 2
+        at_face = np.linalg.solve(one + slab.antisymmetric.T, half @ at_source)
+        found += _between(seams[:-1], at_source, at_face, (True, True), least)
+    return _joined(found)
+
+
+def _between(seams, below, above, near, least):
+    """Return even and odd parts at many depths of a slab that was doubled at seams.
+
+    `near` tells whether depths crowd at the lower and at the upper face, whose even parts are
+    known; depths are in first slabs.
+    """
+    settings, found = tuning.DOUBLED_SLABS, {}
     # parts: depth and even part at the lower end, doublings, even part at the upper end, halvings
-    parts = [(0.0, at_face, doublings, middle[0], settings.even)]
+    parts = [(0.0, below, len(seams), above, settings.even, near)]
     while parts:
-        depth, below, doublings, above, halvings = parts.pop()
+        depth, below, doublings, above, halvings, near = parts.pop()
         half = 2.0 ** (doublings - 1)
-        if half < max(least, 1.0) or (halvings == 0 and depth > 0):
+        if half < max(least, 1.0) or (halvings == 0 and not any(near)):
             continue
         between = found[depth + half] = seams[doublings - 1].values(below, above)
-        nearer = halvings - 1 if depth > 0 else max(halvings - 1, settings.near)
-        parts.append((depth, below, doublings - 1, between[0], nearer))
-        parts.append((depth + half, between[0], doublings - 1, above, halvings - 1))
-    even, odd = (np.array([found[depth][k] for depth in sorted(found)]).T for k in (0, 1))
-    return np.hstack([even - odd, even + odd])
+        lower, upper = (max(halvings - 1, settings.near if crowd else 0) for crowd in near)
+        parts.append((depth, below, doublings - 1, between[0], lower, (near[0], False)))
+        parts.append((depth + half, between[0], doublings - 1, above, upper, (False, near[1])))
+    return [found[depth] for depth in sorted(found)]
+
+
+def _joined(found):
+    """Put pairs of even and odd parts together."""
+    return both_directions(*(np.array(part).T for part in zip(*found, strict=True)))

@@ -196,6 +196,8 @@ def plane_ordinates(
     g = solve.fold(evaluate(scene.numerical_observable(), made))
     row, half = start_row(scene, made), len(g)
     start = {parity: row[:half] + parity * row[half:][::-1] for parity in (ODD, EVEN)}
+    if not any(scene.start.values()):
+        start[ODD][:] = 0  # elements that end at the centre give odd functions half of a jump there
     weights = _weights(solve, start[EVEN], time)
     moving = _carriers(weights * np.abs(g), level.dropped)
     order = np.append(moving, np.setdiff1d(np.arange(half), moving))

@@ -2,7 +2,8 @@
 
 The solutions h(x, .; z) of (z - A) h = g d_x h in a slab, at all depths x and for all z of
 interest, lie close to a space of few dimensions. A basis V of it is taken from solutions at a few
-real z, found by doubling slabs, by a singular value decomposition. It holds values where g > 0 and
+real z (`fields`), and from those of the adjoint equation with a source at the start, by a singular
+value decomposition. It holds values where g > 0 and
 their mirror images, so that what is given at the faces is a combination of V, too. In the inner
 product weighted by the invariant measure times |g|, V is orthonormal, and Galerkin's method leaves
 
@@ -11,7 +12,9 @@ product weighted by the invariant measure times |g|, V is orthonormal, and Galer
 for even and odd parts e, o of h in the state. The modes of this small system solve it exactly in x.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +22,27 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
 from nonsmooth.linear_algebra.effort import EIGENPROBLEM, spend
+
+
+class Fields(NamedTuple):
+    """Functions from which a basis is taken, on the nodes with g > 0 or their mirror images.
+
+    Attributes
+    ----------
+    solutions : numpy.ndarray, shape (k, m)
+        h at many depths.
+    adjoint : numpy.ndarray, shape (k, l)
+        Solutions of the adjoint equation with a source at the start, by which values of h there
+        depend on what is left of the equation elsewhere. Their scale does not matter.
+    """
+
+    solutions: np.ndarray
+    adjoint: np.ndarray
+
+
+def joined(fields: Sequence[Fields]) -> Fields:
+    """Put functions of several z or slabs together."""
+    return Fields(*(np.hstack(part) for part in zip(*fields, strict=True)))
 
 
 @dataclass(frozen=True)
@@ -151,6 +175,10 @@ class ReducedModes:
         """Parts of the modes that are left at a distance, 0 at an infinite one."""
         return np.exp(-self.decays * distance) if np.isfinite(distance) else 0.0 * self.decays
 
+    def along(self, distances: np.ndarray) -> np.ndarray:
+        """Parts of the modes that are left at several distances; shape (r, m)."""
+        return np.array([self.left(distance) for distance in distances]).T
+
     def at_wall(self, length: float) -> np.ndarray:
         """Values where the flow leaves at one wall, if the strengths at both walls are the same."""
         across = self.left(length)
@@ -162,16 +190,19 @@ class ReducedModes:
         return self.even_row @ even + self.odd_row @ odd
 
 
-def reduced(grid: PlaneOrdinates, fields: np.ndarray, accuracy: float) -> ReducedOrdinates:
+def reduced(
+    grid: PlaneOrdinates, fields: Fields, accuracy: float, adjoint: float
+) -> ReducedOrdinates:
     """Choose a basis.
 
     Parameters
     ----------
     grid : PlaneOrdinates
-    fields : numpy.ndarray, shape (k, m)
-        Solutions at several depths and z.
-    accuracy : float
-        Relative size of what is left out.
+    fields : Fields
+        At several z.
+    accuracy, adjoint : float
+        Relative sizes of what is left out of solutions, and of adjoint ones. An error at the start
+        is about the product of both.
 
     Returns
     -------
@@ -180,11 +211,14 @@ def reduced(grid: PlaneOrdinates, fields: np.ndarray, accuracy: float) -> Reduce
     flow = np.sqrt(grid.masses * np.abs(grid.speeds))
     ones = flow * grid.ones[: len(flow)]
     ones /= np.linalg.norm(ones)
-    weighted = flow[:, None] * fields
+    in_units = []
+    for part, left_out in ((fields.solutions, accuracy), (fields.adjoint, adjoint)):
+        weighted = flow[:, None] * part
+        in_units.append(weighted / (left_out * np.linalg.norm(weighted, axis=0).max()))
+    joined = np.hstack(in_units)
     # constants are kept as they are, so that nothing is lost but at the rate z
-    left, sizes, _ = np.linalg.svd(weighted - np.outer(ones, ones @ weighted), full_matrices=False)
-    kept = left[:, sizes > accuracy * np.linalg.norm(weighted, axis=0).max()]
-    return ReducedOrdinates(grid, np.column_stack([ones, kept]) / flow[:, None])
+    left, sizes, _ = np.linalg.svd(joined - np.outer(ones, ones @ joined), full_matrices=False)
+    return ReducedOrdinates(grid, np.column_stack([ones, left[:, sizes > 1]]) / flow[:, None])
 
 
 def unreduced(grid: PlaneOrdinates) -> ReducedOrdinates:

@@ -126,6 +126,8 @@ class Fields:
 
     per_octave: int = 3  # chosen: depths within a factor of 2
     even: int = 16  # chosen: depths that are equally far apart
+    sourced: int = 8  # chosen: the same between a source and a face
+    rounding: float = 1e-6  # chosen: a smaller share of the start in one parity is rounding
     decayed: float = 18.0  # chosen: no depth is beyond exp(-18) of the slowest mode
     # chosen: size of a transform, which is between 0 and 1, that shows an unstable grid
     unstable: float = 5.0

@@ -8,9 +8,10 @@ import scipy.sparse as sp
 
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage.plane import SharedGrids
+from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic import doubled_slabs, fields
 from nonsmooth.kinetic.ordinates_plane import UnstableError
-from nonsmooth.kinetic.reduced_ordinates import reduced
+from nonsmooth.kinetic.reduced_ordinates import joined, reduced
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from slabs import slab
 from support import coarse_ordinates
@@ -48,7 +49,7 @@ def test_faces_are_those_of_slabs(solver, name, z):
     """
     grid, thickness = coarse_ordinates(SCENES[name]), 1.5
     ones = grid.ones[: len(grid.speeds)]
-    back, given = near_face(solver.fields(grid, z, thickness, 1e-9)[0])
+    back, given = near_face(solver.fields(grid, z, thickness, 1e-9, 1.0)[0].solutions)
     coarse, fine = (sum(slab(grid, z, thickness, count)) @ ones for count in (11, 12))
     assert size(grid, given - ones) < 1e-5
     assert size(grid, back - fine) < size(grid, fine - coarse) / (np.sqrt(2) - 1) + 1e-7
@@ -59,8 +60,26 @@ def test_faces_are_those_of_slabs(solver, name, z):
 def test_a_thick_slab_is_a_half_space(solver):
     """What its face sends back, but for what differs between depths of 1e-9."""
     grid = coarse_ordinates(COLORED_FRICTION)
-    thick, half = (solver.fields(grid, 1.0, thickness, 1e-9)[0] for thickness in (160.0, np.inf))
+    thick, half = (
+        solver.fields(grid, 1.0, thickness, 1e-9, 1.0)[0].solutions for thickness in (160.0, np.inf)
+    )
     assert size(grid, near_face(thick)[0] - near_face(half)[0]) < 1e-5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+@SOLVERS
+def test_the_adjoint_solution_tells_the_value_at_the_start(solver, name):
+    """By what it is at the faces, where the flow leaves and h is 1; halfway between them.
+
+    The last of its depths is so near to a face that it hardly differs from that there.
+    """
+    grid, z = coarse_ordinates(SCENES[name]), 0.3
+    found = solver.fields(grid, z, 1.5, 1e-9, 1.0)[0]
+    value = grid.eliminated(z)[EVEN].start_row() @ middle(found.solutions)
+    weights = grid.masses * np.abs(grid.speeds) * grid.ones[: len(grid.speeds)]
+    assert weights @ found.adjoint[:, -1] == pytest.approx(value, abs=1e-5)
+    assert 0.01 < value < 0.9
 
 
 @SOLVERS
@@ -68,10 +87,11 @@ def test_halves_are_solved_too(solver):
     """Bit for bit: the same modes, or slabs made on the way, serve them as each alone."""
     grid = coarse_ordinates(COLORED_FRICTION)
     thicknesses = 2.0 ** np.array([9, 8, 7]) * grid.way
-    alone = [solver.fields(grid, 1e-3, thickness, grid.way)[0] for thickness in thicknesses]
-    halves = solver.fields(grid, 1e-3, thicknesses[0], grid.way, 2)
-    for both in zip(halves, alone, strict=True):
-        assert np.array_equal(*both)
+    alone = [solver.fields(grid, 1e-3, thickness, grid.way, 1.0)[0] for thickness in thicknesses]
+    halves = solver.fields(grid, 1e-3, thicknesses[0], grid.way, 1.0, 2)
+    for half, same in zip(halves, alone, strict=True):
+        assert np.array_equal(half.solutions, same.solutions)
+        assert np.array_equal(half.adjoint, same.adjoint)
 
 
 @SOLVERS
@@ -80,7 +100,7 @@ def test_solutions_that_grow_are_seen(solver):
     grid = coarse_ordinates(COLORED_FRICTION)
     growing = {p: A + 40 * sp.eye_array(A.shape[0]) for p, A in grid.generator.items()}
     with pytest.raises(UnstableError, match="amplify by"):
-        solver.fields(replace(grid, generator=growing), 0.1, 4.0, 0.02 * grid.way)
+        solver.fields(replace(grid, generator=growing), 0.1, 4.0, 0.02 * grid.way, 1.0)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -93,7 +113,7 @@ def test_both_agree_in_the_middle_but_for_rounding(name):
     """
     grid, z, thickness = coarse_ordinates(SCENES[name]), 0.5, 2.0
     by_modes, doubled = (
-        middle(solver.fields(grid, z, thickness, 1e-4 * grid.way)[0])
+        middle(solver.fields(grid, z, thickness, 1e-4 * grid.way, 1.0)[0].solutions)
         for solver in (fields, doubled_slabs)
     )
     allowed = 1e3 * fields.rounding(grid, z, thickness) + 1e-6
@@ -114,8 +134,8 @@ def test_doubling_keeps_bases_small_where_modes_are_nearly_parallel():
     assert fine.basis.shape[1] < 1.5 * coarse.basis.shape[1]
     depth, shifts = 0.02 * fine.grid.way, (0.4, 0.6, 0.9, 1.2)
     by_modes, doubled = (
-        np.hstack([solver.fields(fine.grid, z, 2.0, depth)[0] for z in shifts])
+        joined([solver.fields(fine.grid, z, 2.0, depth, 1.0)[0] for z in shifts])
         for solver in (fields, doubled_slabs)
     )
-    sizes = [reduced(fine.grid, found, 1e-7).basis.shape[1] for found in (by_modes, doubled)]
+    sizes = [reduced(fine.grid, found, 1e-7, 1e-3).basis.shape[1] for found in (by_modes, doubled)]
     assert sizes[1] < 0.7 * sizes[0]

@@ -27,7 +27,7 @@ from nonsmooth.kinetic.ordinates_plane import (
     boxed,
     plane_ordinates,
 )
-from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates, reduced
+from nonsmooth.kinetic.reduced_ordinates import Fields, ReducedOrdinates, joined, reduced
 from nonsmooth.refine import solvable
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
@@ -77,7 +77,7 @@ class SharedGrids:
     ):
         self.scene, self.ends, self._change = scene, boxed(scene), change
         self._times, lengths = times, intervals[:, 1] - intervals[:, 0]
-        self._length = lengths.max()
+        self._length, self._nearest = lengths.max(), np.abs(intervals).min()
         shorter = np.zeros(len(intervals))
         if math.isfinite(self._length):
             shorter = np.log2(self._length / lengths)
@@ -89,7 +89,7 @@ class SharedGrids:
             for levels, k in zip(intervals.tolist(), first.tolist(), strict=True)
         }
         self._grids: dict[tuple, PlaneOrdinates] = {}
-        self._known: dict[tuple, list[np.ndarray]] = {}
+        self._known: dict[tuple, list[Fields]] = {}
         self._reduced: dict[tuple, ReducedOrdinates] = {}
         self._transforms: dict[tuple, dict] = {}
         self._saddles: dict[tuple, dict[tuple, SaddlePoints]] = {}
@@ -209,12 +209,14 @@ class SharedGrids:
         key = driven, other, basis, halves
         if key not in self._reduced:
             found = [
-                h
+                of_half
                 for of_z in self._fields(driven, other, basis)
-                for h in of_z[halves[0] : halves[1] + 1]
+                for of_half in of_z[halves[0] : halves[1] + 1]
             ]
-            accuracy = tuning.BASES[basis].accuracy
-            self._reduced[key] = reduced(self.grid(driven, other), np.hstack(found), accuracy)
+            settings = tuning.BASES[basis]
+            self._reduced[key] = reduced(
+                self.grid(driven, other), joined(found), settings.accuracy, settings.adjoint
+            )
         return self._reduced[key]
 
     def _fields(self, driven, other, basis):
@@ -233,8 +235,9 @@ class SharedGrids:
             if self._change is not None:
                 grids.append(grid.changed(tuning.PLANE_TRANSFORM.changed))
             solve = doubled_slabs.fields if self.nearly_parallel else fields.fields
-            found = [solve(one, z, self._length, least * way, self._halvings) for one in grids]
-            self._known[key] = [np.hstack(of_half) for of_half in zip(*found, strict=True)]
+            slab = self._length, least * way, self._nearest, self._halvings
+            found = [solve(one, z, *slab) for one in grids]
+            self._known[key] = [joined(of_half) for of_half in zip(*found, strict=True)]
         return self._known[key]
 
     @cached_property

@@ -176,13 +176,13 @@ class EachPart:
 class PlaneTransform:
     """The transform of two state variables, and real z from whose solutions bases are taken."""
 
-    least: float = 3.0  # chosen: least z times the last time, ...
+    least: float = 1.0  # chosen: least z times the last time, ...
     largest: float = 10.0  # chosen: ... and largest z times the first time
     shortest: float = 1e-6  # chosen: least mean duration in relaxation times, above rounding
     exponents: tuple[float, ...] = (0.5, 1.0, 2.0)  # chosen: z t at which W is bounded ...
     coarse: float = 1e-6  # chosen: ... with F on a coarse grid, whose error is far below this
-    widest: float = 4.0  # chosen: decades of these z that have one part, ...
-    parts: int = 3  # chosen: ... which is divided into so many for the first basis
+    widest: float = 1.75  # chosen: decades of these z that have one part, ...
+    parts: int = 1  # chosen: ... which is divided into so many for the first basis
     similar: float = 8.0  # chosen: longest over shortest of the intervals that share a basis
     # chosen: error of solutions on the coarsest grid by rounding, from which on slabs are doubled;
     # on finer grids it is up to 1e5 times as large, and bases leave out what is less than 1e-7
@@ -195,13 +195,14 @@ class Basis(NamedTuple):
 
     Attributes
     ----------
-    accuracy : float
-        Relative size of what is left out.
+    accuracy, adjoint : float
+        Relative sizes of what is left out of solutions, and of adjoint ones.
     least : float
         Least depth of a solution, relative to the way that int g goes in a relaxation time.
     """
 
     accuracy: float
+    adjoint: float
     least: float
 
 
@@ -322,10 +323,10 @@ NEAR_WALL = NearWall()
 PLANE_GRIDS = PlaneGrids()
 # a basis has the solutions of the one before if its depths are the same
 BASES = (
-    Basis(1e-7, 0.02),
-    Basis(1e-8, 0.02),
-    Basis(1e-9, 0.01),
-    Basis(1e-9, 0.005),
+    Basis(1e-6, 1e-3, 2e-3),
+    Basis(1e-6, 1e-3, 2e-3),
+    Basis(1e-6, 1e-4, 1e-3),
+    Basis(1e-7, 1e-4, 5e-4),
 )
 TIME_STEPPING = TimeStepping()
 STEPPED_GRIDS = PlaneGrids(

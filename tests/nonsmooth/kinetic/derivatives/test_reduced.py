@@ -1,5 +1,6 @@
 """Derivatives for two variables are those of the discrete equations, and of the scenes."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from nonsmooth.grids.generator import Change
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.derivatives.reduced import differentiated
 from nonsmooth.kinetic.fields import fields
-from nonsmooth.kinetic.reduced_ordinates import reduced, unreduced
+from nonsmooth.kinetic.reduced_ordinates import joined, reduced, unreduced
 from nonsmooth.sensitivity.parameters import PARAMETERS, change, value_of
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from support import coarse_ordinates
@@ -31,9 +32,9 @@ def basis(grid, others=(), accuracy=1e-8):
         field
         for z in (0.05, 0.3, 2.0)
         for one in (grid, *others)
-        for field in fields(one, z, 1.7, 0.01 * one.way)
+        for field in fields(one, z, 1.7, 0.01 * one.way, 0.85)
     ]
-    return reduced(grid, np.hstack(found), accuracy)
+    return reduced(grid, joined(found), accuracy, math.sqrt(accuracy))
 
 
 def transform(ordinates, z, levels):
