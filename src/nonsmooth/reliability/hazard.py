@@ -102,8 +102,21 @@ def _differentiated(at, horizons):
     rate, error = -slope / horizons, error / horizons
     # a relative error of S that is not small says nothing of its logarithm
     error = np.where(own.max(axis=1) < tuning.HAZARD.small, 2 * error, np.inf)
-    rate = np.maximum(rate, 0.0)
+    rate, unsure = np.maximum(rate, 0.0), tuning.HAZARD.beyond_doubt * (own[:, 1:] + own[:, :-1])
+    jump = _jump(-np.diff(log_S, axis=1), unsure) / (spacing * horizons)
+    error = np.maximum(error, jump)
     return rate, error, np.maximum(rate - error, 0.0), rate + error
+
+
+def _jump(falls, unsure):
+    """Largest of the falls from point to point, shape (k, 6), if it is a jump; else 0.
+
+    It is one if it exceeds those on both sides, which a rate that is continuous hardly does, even
+    where it grows steeply. Those at the ends change the rate in the middle less.
+    """
+    beside = np.maximum(falls[:, :-2], falls[:, 2:])
+    inside, unsure = falls[:, 1:-1], unsure[:, 1:-1]
+    return np.where(inside > tuning.HAZARD.jump * beside + unsure, inside, 0.0).max(axis=1)
 
 
 def _counted(at, points, paths):
@@ -139,9 +152,12 @@ def _counted(at, points, paths):
     more = curved + bias
     lower = rate - more - np.hypot(rate - low, two_sided * spread)
     upper = rate + more + np.hypot(high - rate, two_sided * spread)
+    counts = np.diff(crossed, axis=1)
+    jump = _jump(counts, tuning.HAZARD.beyond_doubt * np.sqrt(counts + 1))
+    jump = jump / (paths * left[:, 1] * (points[:, 4] - points[:, 3]))
     return (
         rate,
-        np.where(known, error, np.inf),
-        np.where(known, np.maximum(lower, 0.0), 0.0),
-        np.where(known, upper, np.inf),
+        np.where(known, np.maximum(error, jump), np.inf),
+        np.where(known & (jump == 0), np.maximum(lower, 0.0), 0.0),
+        np.where(known, np.maximum(upper, rate + jump), np.inf),
     )

@@ -69,3 +69,16 @@ def test_bad_requests_are_refused():
         ns.hazard_rate(FRICTION, 0.0, [1.0])
     with pytest.raises(SceneError, match="numbers that increase"):
         ns.hazard_rate(FRICTION, 0.6, [2.0, 1.0])
+
+
+def test_a_jump_of_the_probability_is_within_the_error():
+    """While it slides, the friction force is 1: a third of the paths arrive at 0.7 together.
+
+    Before that the rate is 0. After it W of paths that are counted at close times gives 1.95 at
+    0.72 and 1.37 at 0.75, which is good to a tenth.
+    """
+    scene = ns.Scene("friction", observable="friction_force", start={"y": 1.0})
+    found = ns.hazard_rate(scene, 0.7, [0.65, 0.72, 0.75], method="monte_carlo", tol=1e-2)
+    for known, lower, upper in zip((0.0, 1.95, 1.37), found.lower, found.upper, strict=True):
+        assert lower <= 1.1 * known
+        assert 0.9 * known <= upper
