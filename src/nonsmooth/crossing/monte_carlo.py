@@ -11,7 +11,7 @@ from nonsmooth.crossing.proportions import crossing_estimate, limits_less_bias, 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.ensembles import coupled, coupled_crossings
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
-from nonsmooth.paths.moments import step_bias, variance_of_fine
+from nonsmooth.paths.moments import bias_over_change, step_bias, variance_of_fine
 from nonsmooth.paths.resolution import (
     coarse_step,
     refined_step,
@@ -178,22 +178,49 @@ class _Request:
         fewest = self.paths
         if fewest is None:
             fewest = math.ceil(tuning.COUNTING.pilot / self.tol)
+        paths = min(MONTE_CARLO.pilot_paths, fewest)
         step = coarse_step(self.scene) if self.step is None else self.step
-        return self.halved(step, min(MONTE_CARLO.pilot_paths, fewest), "pilot")
+        found = self.halved(step, paths, "pilot")
+        nearer = tuning.COUNTING.nearer
+        while self.step is None and np.any(self.order_of(found) < self.order):
+            step *= nearer
+            if paths * self.times[-1] / step > tuning.COUNTING.pilot_steps:
+                break
+            found = self.halved(step, paths, "pilot")
+        return found
+
+    def order_of(self, halving):
+        """Order of the bias at each threshold, shape (m, 1).
+
+        From a start at the level those paths never come back, of order 0.25 if g is driven by noise
+        and less if it is smoother, that have left by the end of the first step: of a threshold that
+        many paths reach within it, halving the step changes little, and again, and again.
+        """
+        first = halving.step / 2 * (1 + tuning.COUNTING.rounding)
+        at_once = np.mean(halving.passage[:, 0] <= first, axis=1)
+        left = np.mean(halving.passage[:, 0] > self.times[0], axis=1)
+        near = (at_once > tuning.COUNTING.at_once) & (left > self.tol)
+        return np.where(near, tuning.COUNTING.order_at_once, self.order)[:, None]
+
+    def bias(self, halving):
+        """Bias of the longer step of a halving, and its standard error."""
+        more = bias_over_change(self.order_of(halving)) / bias_over_change(self.order)
+        bias, error = bias_of_counts(self.scene, self.times, halving.passage)
+        return more * bias, more * error
 
     def answer_of_pilot(self, pilot):
         """Return values with half the step of the pilot, or None if they are too inaccurate."""
-        bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
+        bias, error = self.bias(pilot)
         off = distance(pilot.crossed(self.times), pilot.paths)
-        off += 2**-self.order * np.max(np.abs(bias) + error)
+        off += np.max(2.0 ** -self.order_of(pilot) * (np.abs(bias) + error))
         return self.outcome_of_pilot(pilot) if off <= self.tol else None
 
     def outcome_of_pilot(self, pilot):
         """Return values with half the step of the pilot; None if it does not measure the bias."""
         if not pilot.is_resolved(self.order):
             return None
-        bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
-        half = 2**-self.order
+        bias, error = self.bias(pilot)
+        half = 2.0 ** -self.order_of(pilot)
         crossed = pilot.crossed(self.times)
         return outcome(crossed, pilot.paths, pilot.step / 2, half * bias, half * error)
 
@@ -205,12 +232,12 @@ class _Request:
             paths = paths_wanted(crossed, fewest, self.tol)
             self.require_possible(paths, pilot.step, crossed, fewest, pilot)
         if self.step is None:
-            bias, error = bias_of_counts(self.scene, self.times, pilot.passage)
+            bias, error = self.bias(pilot)
             worst = np.max(np.abs(bias) + error)
             more = paths // MONTE_CARLO.halved
             if worst > self.allowed_bias and more > fewest:
                 pilot = self.halved(pilot.step, more, "pilot")
-                own = bias_of_counts(self.scene, self.times, pilot.passage)
+                own = self.bias(pilot)
                 worst = np.max(np.abs(np.array(own)).sum(axis=0))
             step = refined_step(pilot.step, worst, self.allowed_bias, self.order)
             if self.paths is None:
@@ -228,7 +255,7 @@ class _Request:
                 fewer = min(paths, max(plan.fewest, paths // MONTE_CARLO.halved))
                 check = self.halved(step, fewer, "halving")
             check.require_resolved(self.order)
-            bias, error = bias_of_counts(self.scene, self.times, check.passage)
+            bias, error = self.bias(check)
             known = np.max(np.abs(bias) - MONTE_CARLO.sigmas * error)
             if self.step is not None or known <= self.allowed_bias:
                 return outcome(crossed, paths, step, bias, error)

@@ -147,6 +147,14 @@ class Counting:
     checked: float = 1 + 3 / 8
     # chosen: largest number of runs, each with a shorter step; as a rule one is enough
     attempts: int = 3
+    # chosen: share of paths that reach a threshold within the first step, from which on it is near
+    at_once: float = 0.01
+    nearer: float = 0.25  # chosen: the pilot's step is then so many times as long, ...
+    pilot_steps: float = 1e9  # chosen: ... as long as it takes fewer steps of paths
+    order_at_once: float = (
+        0.2  # chosen: below 0.25 and 0.22, of Brownian motion integrated once, twice
+    )
+    rounding: float = 1e-9  # derived: of a time
 
 
 @dataclass(frozen=True)

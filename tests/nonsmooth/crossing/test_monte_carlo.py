@@ -64,6 +64,28 @@ def test_tolerance_out_of_reach_is_refused_with_the_best_value():
         ns.crossing_probability(scene, 0.6, HORIZONS, tol=1e-7, method="monte_carlo")
 
 
+@pytest.mark.parametrize("threshold", [0.1, 0.01, 1e-3])
+def test_single_thresholds_next_to_the_start(threshold):
+    """Paths that have left a near threshold by the end of a step may never come back.
+
+    W is known from the deterministic method, which takes a minute for the nearest.
+    """
+    levels = (-threshold, np.inf)
+    run = ns.crossing_probability(FRICTION, levels, [1.0], method="monte_carlo", seed=4)
+    exact = {0.1: 0.35825, 0.01: 0.69435, 1e-3: 0.81842}[threshold]
+    stated = stats.norm.isf(FALSE_ALARM / 2) * run["standard_error"] + np.abs(run["step_bias"])
+    assert abs(float(run["probability"][0]) - exact) < float(stated[0])
+
+
+def test_a_step_that_passes_a_threshold_has_a_large_error():
+    """S falls like the root b^(1/6) from 0.076 at b = 1e-5, to 5e-3; a long step has 0.2."""
+    run = ns.crossing_probability(
+        FRICTION, (-1e-12, np.inf), [1.0], method="monte_carlo", step=0.05, paths=20_000, seed=4
+    )
+    assert float(run["probability"][0]) < 0.9
+    assert float(run["upper"][0]) > 0.99
+
+
 def test_what_hardly_happens_takes_few_paths():
     """Where W is far below tol, some counts by 1/tol show it; a false alarm in 300 runs."""
     exact = ns.crossing_probability(
