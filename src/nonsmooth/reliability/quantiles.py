@@ -34,7 +34,8 @@ from nonsmooth.reliability.roots import (
     Values,
     equivalent,
     root_on_grid,
-    solved_root,
+    searched,
+    solved_roots,
 )
 from nonsmooth.results import between_limits
 from nonsmooth.scenes.scene import Scene, require_random
@@ -127,8 +128,14 @@ def crossing_threshold(
         found = values(x, tol, slice(None), paths)
         return [found[k] for _ in targets for k in range(len(horizons))]
 
-    def curve(k, x, tol):
-        return values(x, tol, [k % len(horizons)])[0]
+    def together(wanted, tol):
+        found = {}
+        for column in sorted({k % len(horizons) for k in wanted}):
+            own = {k: x for k, x in wanted.items() if k % len(horizons) == column}
+            x = np.unique(np.concatenate(list(own.values())))
+            (run,) = values(x, tol, [column])
+            found |= {k: _values_at(run, x, some) for k, some in own.items()}
+        return found
 
     def present(roots):
         dims = ("probability", "horizon")
@@ -142,7 +149,7 @@ def crossing_threshold(
 
     def solve():
         guesses = [guess(*pair) for pair in pairs]
-        return ask.roots([P for P, _ in pairs], guesses, curves, curve, brownian, FALLING)
+        return ask.roots([P for P, _ in pairs], guesses, curves, together, brownian, FALLING)
 
     with limited(tol):
         return answered(solve, present, tol_given=tol is not None)
@@ -217,8 +224,10 @@ def failure_time(
     def curves(x, tol, paths=None):
         return [ask(pair, x, tol, paths).isel(threshold=0)] * len(targets)
 
-    def curve(_, x, tol):
-        return curves(x, tol)[0]
+    def together(wanted, tol):
+        x = np.unique(np.concatenate(list(wanted.values())))
+        run = curves(x, tol)[0]
+        return {k: _values_at(run, x, own) for k, own in wanted.items()}
 
     def present(roots):
         over = {"probability": ("probability", targets, "probability of a crossing")}
@@ -228,7 +237,7 @@ def failure_time(
 
     def solve():
         guesses = [guess(P) for P in targets]
-        return ask.roots(list(targets), guesses, curves, curve, brownian, RISING)
+        return ask.roots(list(targets), guesses, curves, together, brownian, RISING)
 
     with limited(tol):
         return answered(solve, present, tol_given=tol is not None)
@@ -309,35 +318,38 @@ class _Question:
         targets: list[float],
         guesses: list[tuple[float, float]],
         curves: Callable[..., list[xr.Dataset]],
-        curve: Callable[..., xr.Dataset],
+        together: Callable[[dict[int, np.ndarray], float | None], dict[int, Values]],
         reference: Callable[[float], float],
         sense: int,
     ) -> list[Root]:
         """Find where W takes the values `targets`.
 
         By Monte Carlo those of one tolerance on the same paths, from `curves`, which returns W for
-        each target; otherwise one by one, from `curve`, which takes the number of the target. The
-        reference is W of Brownian motion.
+        each target; otherwise those of one tolerance together, from `together`, which takes x for
+        the numbers of some targets. The reference is W of Brownian motion.
         """
         # otherwise the method follows from the scene
         named = bool({"method", "order"} & self._given.keys())
         sampled = self._is_sampled() or (not named and default_tolerance(self._scene) is None)
         found, counted = None, np.inf
+        tolerances = [self.tolerance(target) for target in targets]
+
+        def solved(wanted):
+            known = {}
+            for tol in dict.fromkeys(tolerances[k] for k in wanted):
+                known |= together({k: x for k, x in wanted.items() if tolerances[k] == tol}, tol)
+            return known
+
         try:
             if not sampled and not named:
-                first = curve(0, np.array(guesses[0][:1]), self.tolerance(targets[0]))
-                sampled = first.attrs["method"] == SAMPLED
+                solved({k: np.array(guess[:1]) for k, guess in enumerate(guesses)})
+                sampled = SAMPLED in self.attributes["method"].split(", ")
             if not sampled:
-                found = [
-                    solved_root(
-                        partial(_one, partial(curve, k), self.tolerance(target)),
-                        reference,
-                        target,
-                        guess,
-                        sense,
-                    )
-                    for k, (target, guess) in enumerate(zip(targets, guesses, strict=True))
+                searches = [
+                    searched(reference, target, guess, sense)
+                    for target, guess in zip(targets, guesses, strict=True)
                 ]
+                found = solved_roots(searches, solved)
         except ToleranceError:  # the solver found nothing, or not within its effort
             if named or self._tol is not None:
                 raise
@@ -386,8 +398,9 @@ def _require_possible(targets, tol):
         )
 
 
-def _one(curve, tol, x):
-    return _values(curve(x, tol))
+def _values_at(run, x, wanted):
+    """Take values at some of the increasing x of a run."""
+    return Values(*(part[np.searchsorted(x, wanted)] for part in _values(run)))
 
 
 def _values(run):

@@ -6,7 +6,7 @@ is known well, they are not computed, but follow from the limits of W near by, u
 that the slope changes by no more than is usual (`tuning.SEARCH.bend`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
@@ -55,14 +55,57 @@ class Root(NamedTuple):
     upper: float
 
 
-def solved_root(
-    evaluate: Callable[[np.ndarray], Values],
+Search = Generator[np.ndarray, Values, Root]
+
+
+def solved_roots(
+    searches: Sequence[Search], evaluate: Callable[[dict[int, np.ndarray]], dict[int, Values]]
+) -> list[Root]:
+    """Advance several searches together, so that W at several x is computed at once.
+
+    Parameters
+    ----------
+    searches : sequence of Search
+        From `searched`.
+    evaluate : callable
+        Takes from the places of some searches the x, shape (k,), at which each asks for W; returns
+        the values of each.
+
+    Returns
+    -------
+    list of Root
+
+    Raises
+    ------
+    ToleranceError
+        If `evaluate` does before W is known well enough to tell a root.
+    """
+    found: dict[int, Root] = {}
+    wanted = {k: next(search) for k, search in enumerate(searches)}
+    while wanted:
+        refused: ToleranceError | None = None
+        values: dict[int, Values] = {}
+        try:
+            values = evaluate(wanted)
+        except ToleranceError as raised:
+            refused = raised
+        for k in list(wanted):
+            search = searches[k]
+            try:
+                wanted[k] = search.send(values[k]) if refused is None else search.throw(refused)
+            except StopIteration as done:
+                found[k] = done.value
+                del wanted[k]
+    return [found[k] for k in range(len(searches))]
+
+
+def searched(
     reference: Callable[[float], float],
     target: float,
     guess: tuple[float, float],
     sense: int,
-) -> Root:
-    """Find a root by the secant method, from few values of W.
+) -> Search:
+    """Search a root by the secant method, from few values of W.
 
     At x, W is what the reference is at some x*: the crossing probability of Brownian motion. In
     their logarithms x* is a nearly linear function of x, so that two values of W tell its slope,
@@ -70,8 +113,6 @@ def solved_root(
 
     Parameters
     ----------
-    evaluate : callable
-        Takes increasing x > 0, shape (k,).
     reference : callable
         A function of one x with values from 0 to 1, monotone like W, and of nearly its shape.
     target : float
@@ -81,6 +122,11 @@ def solved_root(
     sense : {RISING, FALLING}
         Of W in x.
 
+    Yields
+    ------
+    numpy.ndarray, shape (1,)
+        x > 0, of which it is sent the `Values`.
+
     Returns
     -------
     Root
@@ -89,7 +135,7 @@ def solved_root(
     Raises
     ------
     ToleranceError
-        If `evaluate` does before W is known well enough to tell a root.
+        If one is thrown in before W is known well enough to tell a root.
     """
     search, wanted = tuning.SEARCH, equivalent(reference, target, sense)
     x, left, right = guess[0], 0.0, np.inf
@@ -97,7 +143,7 @@ def solved_root(
     known: tuple[_Point, float, float] | None = None
     for _ in range(search.most):
         try:
-            values = evaluate(np.array([x]))
+            values = yield np.array([x])
         except ToleranceError:
             root = None if known is None else _by_slope(*known, np.inf)
             if root is None:
@@ -118,7 +164,7 @@ def solved_root(
         x *= np.exp(_step(points, slope))
         if not left < x < right and left > 0 and right < np.inf:
             x = np.sqrt(left * right)
-    return _by_doubling(evaluate, target, sense, base, slope)
+    return (yield from _by_doubling(target, sense, base, slope))
 
 
 def equivalent(reference: Callable[[float], float], W: float, sense: int) -> float:
@@ -218,7 +264,7 @@ def _step(points, slope):
     return np.clip(-gap / slope, -reach, reach)
 
 
-def _by_doubling(evaluate, target, sense, point, slope):
+def _by_doubling(target, sense, point, slope):
     """Look for limits on either side of a point, ever farther away."""
     search, x = tuning.SEARCH, np.exp(point.place)
     reach = max(abs(point.gap), abs(point.low), abs(point.high)) / slope
@@ -228,7 +274,7 @@ def _by_doubling(evaluate, target, sense, point, slope):
         spread = reach
         while spread <= np.log(search.widest):
             end = x * np.exp([side * spread])
-            values = evaluate(end)
+            values = yield end
             found = values.before(target, sense) if side < 0 else values.after(target, sense)
             if found[0]:
                 limits.append(float(end[0]))
@@ -248,7 +294,7 @@ def root_on_grid(x: np.ndarray, values: Values, target: float, sense: int) -> Ro
         Increasing.
     values : Values
     target, sense
-        As for `solved_root`.
+        As for `searched`.
 
     Returns
     -------

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
-from nonsmooth.reliability.roots import FALLING, RISING, Values, root_on_grid, solved_root
+from nonsmooth.reliability.roots import (
+    FALLING,
+    RISING,
+    Values,
+    root_on_grid,
+    searched,
+    solved_roots,
+)
 
 REFERENCE = {
     RISING: lambda x: float(ns.brownian_crossing(1.0, x)),
@@ -32,6 +39,12 @@ def brownian(error, wrong, sense, warp=straight):
         return Values(shown, np.full(len(x), error), *limits)
 
     return evaluate
+
+
+def solved_root(evaluate, reference, target, guess, sense):
+    """Find a single root."""
+    search = searched(reference, target, guess, sense)
+    return solved_roots([search], lambda wanted: {k: evaluate(x) for k, x in wanted.items()})[0]
 
 
 def inside(root, target, sense, warp=straight):
@@ -78,6 +91,26 @@ def test_few_values_suffice(warp, most, relative, sense):
         root = solved_root(counted, REFERENCE[sense], target, (guess, 1.0), sense)
         assert len(asked) <= most
         assert inside(root, target, sense, warp)
+
+
+@pytest.mark.parametrize("sense", [RISING, FALLING])
+def test_roots_together_are_those_alone(sense):
+    """With W at all x in one call, and as many calls as the one that takes most."""
+    targets, shown, calls = (1e-6, 0.1, 0.5, 0.97), brownian(1e-9, 0.5, sense, warped), []
+
+    def search(target):
+        return searched(REFERENCE[sense], target, (1.0, 1.0), sense)
+
+    def evaluate(wanted):
+        calls.append(len(wanted))
+        return {k: shown(x) for k, x in wanted.items()}
+
+    alone = [solved_roots([search(target)], evaluate)[0] for target in targets]
+    most, calls[:] = len(calls), []
+    together = solved_roots([search(target) for target in targets], evaluate)
+    assert together == alone
+    assert calls[0] == len(targets)
+    assert 2 * len(calls) < most
 
 
 @pytest.mark.parametrize("sense", [RISING, FALLING])
