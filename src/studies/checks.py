@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from nonsmooth.errors import NonsmoothError, ToleranceError, quoted
-from nonsmooth.paths.absorption.envelope import scales
+from nonsmooth.paths.absorption.envelope import squares
 from nonsmooth.progress import bar
 from reproduction.configuration.schema import read_schema, shown, validate
 from reproduction.errors import ConfigError, dotted
@@ -157,8 +157,8 @@ def _check_envelope(question, given, units):
         last = float(np.max(times)) * float(given.get("p", 1.0))
     except (TypeError, ValueError):  # is refused by the question itself
         return
-    step = last * units.factor(TIME) / ENVELOPE_POINTS
-    scales(question["envelope"], 0.0, step, ENVELOPE_POINTS)
+    places = (np.arange(ENVELOPE_POINTS) + 0.5) / ENVELOPE_POINTS
+    squares(question["envelope"], last * units.factor(TIME) * places)
 
 
 def _examples(study):

@@ -20,6 +20,7 @@ from nonsmooth.paths.resolution import (
 )
 from nonsmooth.paths.sampling import Sampling
 from nonsmooth.paths.schemes import registry
+from nonsmooth.paths.time_grids import equal_steps
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes.scene import Scene
 
@@ -184,7 +185,7 @@ class _Request:
         nearer = tuning.COUNTING.nearer
         while self.step is None and np.any(self.order_of(found) < self.order):
             step *= nearer
-            if paths * self.times[-1] / step > tuning.COUNTING.pilot_steps:
+            if paths * self.times[-1] / step > min(tuning.COUNTING.pilot_steps, self.most):
                 break
             found = self.halved(step, paths, "pilot")
         return found
@@ -192,12 +193,14 @@ class _Request:
     def order_of(self, halving):
         """Order of the bias at each threshold, shape (m, 1).
 
-        From a start at the level those paths never come back, of order 0.25 if g is driven by noise
-        and less if it is smoother, that have left by the end of the first step: of a threshold that
-        many paths reach within it, halving the step changes little, and again, and again.
+        Many paths may reach a near threshold within the first step. Those that have left by its end
+        may never come back: of Brownian motion that is integrated once they are a part of the order
+        1/4 in the step. Halving it changes little, then, but again and again.
         """
-        first = halving.step / 2 * (1 + tuning.COUNTING.rounding)
-        at_once = np.mean(halving.passage[:, 0] <= first, axis=1)
+        first = equal_steps(self.times, halving.step)[0][1] / 2
+        paths = min(halving.paths, MONTE_CARLO.pilot_paths)
+        soon = self.passages([first], first, paths, "first step")[1]
+        at_once = np.mean(np.isfinite(soon[:, 0]), axis=1)
         left = np.mean(halving.passage[:, 0] > self.times[0], axis=1)
         near = (at_once > tuning.COUNTING.at_once) & (left > self.tol)
         return np.where(near, tuning.COUNTING.order_at_once, self.order)[:, None]
@@ -285,15 +288,18 @@ class _Request:
 
     def halved(self, step, paths, label):
         """Run paths with a step and its half, on a noise of their own."""
+        return _Halving(step, paths, *self.passages(self.times, step, paths, label))
+
+    def passages(self, times, step, paths, label):
+        """Return changes by halving a step, and passage times of the shape (m, 2, paths)."""
         own = labelled(self.seed, label)
         sampling = Sampling(step, paths, own, threads=self.threads, precision=self.precision)
         levels = np.sqrt(self.p) * self.thresholds
         if len(levels) > 1:
-            change, passage = coupled_crossings(self.scene, self.times, sampling, levels)
-        else:  # passage times that are interpolated within a step, in fewer calls
-            change, passage = coupled(self.scene, self.times, sampling, tuple(levels[0]))
-            passage = passage[None]
-        return _Halving(step, paths, change, passage)
+            return coupled_crossings(self.scene, times, sampling, levels)
+        # passage times that are interpolated within a step, in fewer calls
+        change, passage = coupled(self.scene, times, sampling, tuple(levels[0]))
+        return change, passage[None]
 
     def require_possible(self, paths, step, crossed, count, pilot):
         """Refuse too many steps; the message has the estimate from the first `count` paths."""

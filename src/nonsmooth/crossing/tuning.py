@@ -150,11 +150,10 @@ class Counting:
     # chosen: share of paths that reach a threshold within the first step, from which on it is near
     at_once: float = 0.01
     nearer: float = 0.25  # chosen: the pilot's step is then so many times as long, ...
-    pilot_steps: float = 1e9  # chosen: ... as long as it takes fewer steps of paths
+    pilot_steps: float = 1e9  # chosen: ... unless it takes more steps of paths than these
     order_at_once: float = (
         0.2  # chosen: below 0.25 and 0.22, of Brownian motion integrated once, twice
     )
-    rounding: float = 1e-9  # derived: of a time
 
 
 @dataclass(frozen=True)

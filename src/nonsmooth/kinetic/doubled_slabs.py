@@ -104,8 +104,9 @@ def fields(
     if math.isfinite(thickness):
         doublings = halvings + max(2, math.ceil(math.log2(thickness / thin / 2.0**halvings)))
         thin = thickness / 2.0**doublings
-    # in a half space the source is in the middle of a slab as thick as this, or up to half of it
-    nearest = max(2, math.floor(math.log2(2 * source / thin)))
+    # in a half space the source is in the middle of a slab, by so many doublings, whose half is as
+    # thick as the start is far from the face, or up to a half less
+    nearest = 0 if math.isfinite(thickness) else max(2, math.floor(math.log2(2 * source / thin)))
     ordinates, eliminated = unreduced(grid), grid.eliminated(z)
     matrices, rows = ordinates.matrices(eliminated, ordinates.continued(eliminated))
     slab, seams, solved = _thin(matrices, thin), [], {}

@@ -215,9 +215,10 @@ def reduced(
     for part, left_out in ((fields.solutions, accuracy), (fields.adjoint, adjoint)):
         weighted = flow[:, None] * part
         in_units.append(weighted / (left_out * np.linalg.norm(weighted, axis=0).max()))
-    joined = np.hstack(in_units)
+    fields_in_units = np.hstack(in_units)
     # constants are kept as they are, so that nothing is lost but at the rate z
-    left, sizes, _ = np.linalg.svd(joined - np.outer(ones, ones @ joined), full_matrices=False)
+    rest = fields_in_units - np.outer(ones, ones @ fields_in_units)
+    left, sizes, _ = np.linalg.svd(rest, full_matrices=False)
     return ReducedOrdinates(grid, np.column_stack([ones, left[:, sizes > 1]]) / flow[:, None])
 
 

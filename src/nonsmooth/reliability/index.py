@@ -43,8 +43,9 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
     numbers = all(part.dtype.kind in "iuf" for part in (*probabilities, error))
     alike = all(part.dims == W.dims for part in (lower, upper, error))
     inside = (part.clip(0, 1) == part for part in probabilities)
+    own_error = crossing.get("survival_error", error)
     if not (numbers and alike) or not all(
-        condition.all() for condition in (*inside, error >= 0, lower <= upper)
+        condition.all() for condition in (*inside, error >= 0, own_error >= 0, lower <= upper)
     ):
         raise SceneError(
             "crossing has numbers that are no probabilities; give what crossing_probability "

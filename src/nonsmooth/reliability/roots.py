@@ -83,20 +83,26 @@ def solved_roots(
     found: dict[int, Root] = {}
     wanted = {k: next(search) for k, search in enumerate(searches)}
     while wanted:
-        refused: ToleranceError | None = None
-        values: dict[int, Values] = {}
-        try:
-            values = evaluate(wanted)
-        except ToleranceError as raised:
-            refused = raised
-        for k in list(wanted):
+        for k, value in _evaluated(evaluate, wanted).items():
             search = searches[k]
             try:
-                wanted[k] = search.send(values[k]) if refused is None else search.throw(refused)
+                told = isinstance(value, Values)
+                wanted[k] = search.send(value) if told else search.throw(value)
             except StopIteration as done:
                 found[k] = done.value
                 del wanted[k]
     return [found[k] for k in range(len(searches))]
+
+
+def _evaluated(evaluate, wanted):
+    """Values for each search, or what refuses them; if it refuses all together, for each alone."""
+    try:
+        return evaluate(wanted)
+    except ToleranceError as refused:
+        if len(wanted) == 1:
+            return dict.fromkeys(wanted, refused)
+    alone = ({k: x} for k, x in wanted.items())
+    return {k: value for one in alone for k, value in _evaluated(evaluate, one).items()}
 
 
 def searched(
@@ -291,7 +297,7 @@ def root_on_grid(x: np.ndarray, values: Values, target: float, sense: int) -> Ro
     Parameters
     ----------
     x : numpy.ndarray, shape (k,)
-        Increasing.
+        Increasing, at least four.
     values : Values
     target, sense
         As for `searched`.
@@ -299,10 +305,10 @@ def root_on_grid(x: np.ndarray, values: Values, target: float, sense: int) -> Ro
     Returns
     -------
     Root
-        The limits are points of the grid, or 0 and inf if the grid ends before, and with it the
-        root. The error is that of W, over its slope, and what the grid leaves open: as much of the
-        interval around the root as the slope changes, all of it where W jumps. Paths that arrive
-        together are told apart by rounding, which the limits allow for.
+        The limits are points of the grid, or 0 and inf if the grid ends before. The error is that
+        of W, over its slope, and what the grid leaves open: as much of the interval around the root
+        as the slope changes, all of it where W jumps. Paths that arrive together are told apart by
+        rounding, which the limits allow for.
     """
     before, after = values.before(target, sense), values.after(target, sense)
     # limits of samples need not be monotone: the root is within the widest interval they allow
@@ -329,7 +335,7 @@ def root_on_grid(x: np.ndarray, values: Values, target: float, sense: int) -> Ro
 def _left_open(x, rising, value):
     """By how much a root on a grid is unsure because the slope changes from point to point."""
     place = int(np.clip(np.searchsorted(x, value), 2, len(x) - 2))
-    before, change, after = np.diff(rising[place - 2 : place + 2])
-    width = float(x[place] - x[place - 1])
-    turn = max(abs(change - before), abs(after - change))
-    return width * min(1.0, turn / change) if change > 0 else width
+    around = slice(place - 2, place + 2)
+    before, slope, after = np.diff(rising[around]) / np.diff(x[around])
+    width, turn = float(x[place] - x[place - 1]), max(abs(slope - before), abs(after - slope))
+    return width * min(1.0, turn / slope) if slope > 0 else width

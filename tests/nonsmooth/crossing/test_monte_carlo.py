@@ -77,13 +77,28 @@ def test_single_thresholds_next_to_the_start(threshold):
     assert abs(float(run["probability"][0]) - exact) < float(stated[0])
 
 
-def test_a_step_that_passes_a_threshold_has_a_large_error():
-    """S falls like the root b^(1/6) from 0.076 at b = 1e-5, to 5e-3; a long step has 0.2."""
+@pytest.mark.parametrize("others", [[], [(-1.0, np.inf)]])
+def test_a_step_that_passes_a_threshold_has_a_large_error(others):
+    """S falls like the root b^(1/6) from 0.076 at b = 1e-5, to 5e-3; a long step has 0.2.
+
+    A farther threshold in its company has the usual error.
+    """
+    levels = [(-1e-12, np.inf), *others]
     run = ns.crossing_probability(
-        FRICTION, (-1e-12, np.inf), [1.0], method="monte_carlo", step=0.05, paths=20_000, seed=4
+        FRICTION, levels, [1.0], method="monte_carlo", step=0.05, paths=20_000, seed=4
     )
-    assert float(run["probability"][0]) < 0.9
-    assert float(run["upper"][0]) > 0.99
+    near, *far = run["probability_error"].values.reshape(-1)
+    assert run["probability"].values.flat[0] < 0.9
+    assert 0.2 < near < 0.5
+    assert all(error < 0.02 for error in far)
+
+
+def test_early_horizons_have_steps_of_their_own():
+    """A sixteenth of the first horizon passes no threshold, although the step that is asked may."""
+    run = ns.crossing_probability(
+        FRICTION, 0.012, [0.1], method="monte_carlo", step=0.1, paths=20_000, seed=4
+    )
+    assert float(run["probability_error"][0]) < 0.006
 
 
 def test_what_hardly_happens_takes_few_paths():

@@ -81,4 +81,4 @@ def test_a_jump_of_the_probability_is_within_the_error():
     found = ns.hazard_rate(scene, 0.7, [0.65, 0.72, 0.75], method="monte_carlo", tol=1e-2)
     for known, lower, upper in zip((0.0, 1.95, 1.37), found.lower, found.upper, strict=True):
         assert lower <= 1.1 * known
-        assert 0.9 * known <= upper
+        assert 0.9 * known <= upper < 30

@@ -121,7 +121,9 @@ def _of_similar_size(sizes, ratio):
 def _in_plane(scene, intervals, times, tol):
     """Return what solves each interval, for two state variables."""
     solvers, lengths = {}, intervals[:, 1] - intervals[:, 0]
-    for group in _of_similar_size(lengths, tuning.PLANE_TRANSFORM.similar):
+    nearest = np.abs(intervals).min(axis=1)
+    sizes = np.where(np.isfinite(lengths), lengths, nearest)
+    for group in _of_similar_size(sizes, tuning.PLANE_TRANSFORM.similar):
         together = Together(scene, intervals[group], times)
         for row, k in enumerate(group):
             solvers[k] = partial(_one_in_plane, together, row, tol)

@@ -185,7 +185,7 @@ class PlaneTransform:
     parts: int = 1  # chosen: ... which is divided into so many for the first basis
     similar: float = 8.0  # chosen: longest over shortest of the intervals that share a basis
     # chosen: error of solutions on the coarsest grid by rounding, from which on slabs are doubled;
-    # on finer grids it is up to 1e5 times as large, and bases leave out what is less than 1e-7
+    # on finer grids it is up to 1e5 times as large, and bases leave out what is less than 1e-6
     rounding: float = 5e-13
     changed: float = 0.1  # chosen: part of a parameter by which the solutions of a basis differ
 

@@ -7,7 +7,7 @@ alone. Thus rare crossings take hardly more paths than frequent ones.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -174,6 +174,8 @@ class _Request:
                 fault = fault or self.out_of_reach(last)
                 break
             courses = [course for course in led.values() if course is not None]
+            if len(courses) < len(led):  # what comes to the other side by chance counts, too
+                courses = [replace(course, counted=0) for course in courses]
             sums, (bias, bias_error), step, used = self.sampled(courses, last, step)
             paths = max(paths, used)
             served = self.served(sums)

@@ -19,6 +19,9 @@ def test_envelopes_may_jump_and_vary():
     """A jump within a step, and three periods in one, are no pulses: means differ by less."""
     for envelope in ("1 + sign(t - 0.53)", "abs(sin(200*t))", "sqrt(t)", "exp(-t)"):
         assert np.all(scales(envelope, 0.0, 0.1, 10) >= 0)
+    for jump in (0.93, 0.53, 0.98):
+        assert scales(f"1 + sign(t - {jump})", 0.0, 0.05, 20)[-1] > 0
+        assert scales(f"1 + sign(t - {jump})", jump - 0.03, 0.05, 2)[-1] == pytest.approx(2)
 
 
 def test_constant():
