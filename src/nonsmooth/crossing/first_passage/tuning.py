@@ -321,12 +321,13 @@ PLANE_TRANSFORM = PlaneTransform()
 EACH_PART = EachPart()
 NEAR_WALL = NearWall()
 PLANE_GRIDS = PlaneGrids()
-# a basis has the solutions of the one before if its depths are the same
+# chosen: what is left out, so that the change to the next basis shows an error by it, too; a basis
+# has the solutions of the one before if its depths are the same
 BASES = (
     Basis(1e-6, 1e-3, 2e-3),
-    Basis(1e-6, 1e-3, 2e-3),
-    Basis(1e-6, 1e-4, 1e-3),
-    Basis(1e-7, 1e-4, 5e-4),
+    Basis(1e-7, 1e-3, 2e-3),
+    Basis(1e-7, 1e-4, 1e-3),
+    Basis(1e-8, 1e-4, 5e-4),
 )
 TIME_STEPPING = TimeStepping()
 STEPPED_GRIDS = PlaneGrids(
