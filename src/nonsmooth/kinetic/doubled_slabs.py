@@ -104,8 +104,8 @@ def fields(
     if math.isfinite(thickness):
         doublings = halvings + max(2, math.ceil(math.log2(thickness / thin / 2.0**halvings)))
         thin = thickness / 2.0**doublings
-    # doublings of the slab of a half space that has the source in its middle: half of it is as thick
-    # as the start is far from the face, or at least half as thick
+    # doublings of the slab of a half space that has the source in its middle: half of it is as
+    # thick as the start is far from the face, or at least half as thick
     nearest = 0 if math.isfinite(thickness) else max(2, math.floor(math.log2(2 * source / thin)))
     ordinates, eliminated = unreduced(grid), grid.eliminated(z)
     matrices, rows = ordinates.matrices(eliminated, ordinates.continued(eliminated))
