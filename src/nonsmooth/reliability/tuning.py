@@ -103,7 +103,7 @@ class Hazard:
     spacing: float = 0.05
     small: float = 0.1  # chosen: largest relative error of 1 - W; twice the error is stated for it
     few_digits: float = 2e-4  # chosen: error of W above which paths may tell more
-    # chosen: log S jumps where it falls between two points so many times as much as beside them, ...
+    # chosen: log S jumps where it falls between two points so many times as much as beside, ...
     jump: float = 3.0
     beyond_doubt: float = 5.0  # chosen: ... and by so many errors more
 
