@@ -106,11 +106,12 @@ def sampled_crossing(
 class _Halving:
     """Paths with a step and with half of it on the same noise, see `coupled`.
 
-    `passage` has the shape (m, 2, paths).
+    `passage` has the shape (m, 2, paths), `order`, that of the bias at each threshold, (m, 1).
     """
 
     step: float
     paths: int
+    order: np.ndarray
     change: np.ndarray
     passage: np.ndarray
 
@@ -183,31 +184,31 @@ class _Request:
         step = coarse_step(self.scene) if self.step is None else self.step
         found = self.halved(step, paths, "pilot")
         nearer = tuning.COUNTING.nearer
-        while self.step is None and np.any(self.order_of(found) < self.order):
+        while self.step is None and np.any(found.order < self.order):
             step *= nearer
             if paths * self.times[-1] / step > min(tuning.COUNTING.pilot_steps, self.most):
                 break
             found = self.halved(step, paths, "pilot")
         return found
 
-    def order_of(self, halving):
-        """Order of the bias at each threshold, shape (m, 1).
+    def order_of(self, step, paths, passage):
+        """Order of the bias of a step at each threshold, shape (m, 1).
 
         Many paths may reach a near threshold within the first step. Those that have left by its end
         may never come back: of Brownian motion that is integrated once they are a part of the order
         1/4 in the step. Halving it changes little, then, but again and again.
         """
-        first = equal_steps(self.times, halving.step)[0][1] / 2
-        paths = min(halving.paths, MONTE_CARLO.pilot_paths)
+        first = equal_steps(self.times, step)[0][1] / 2
+        paths = min(paths, MONTE_CARLO.pilot_paths)
         soon = self.passages([first], first, paths, "first step")[1]
         at_once = np.mean(np.isfinite(soon[:, 0]), axis=1)
-        left = np.mean(halving.passage[:, 0] > self.times[0], axis=1)
+        left = np.mean(passage[:, 0] > self.times[0], axis=1)
         near = (at_once > tuning.COUNTING.at_once) & (left > self.tol)
         return np.where(near, tuning.COUNTING.order_at_once, self.order)[:, None]
 
     def bias(self, halving):
         """Bias of the longer step of a halving, and its standard error."""
-        more = bias_over_change(self.order_of(halving)) / bias_over_change(self.order)
+        more = bias_over_change(halving.order) / bias_over_change(self.order)
         bias, error = bias_of_counts(self.scene, self.times, halving.passage)
         return more * bias, more * error
 
@@ -215,7 +216,7 @@ class _Request:
         """Return values with half the step of the pilot, or None if they are too inaccurate."""
         bias, error = self.bias(pilot)
         off = distance(pilot.crossed(self.times), pilot.paths)
-        off += np.max(2.0 ** -self.order_of(pilot) * (np.abs(bias) + error))
+        off += np.max(2.0**-pilot.order * (np.abs(bias) + error))
         return self.outcome_of_pilot(pilot) if off <= self.tol else None
 
     def outcome_of_pilot(self, pilot):
@@ -223,7 +224,7 @@ class _Request:
         if not pilot.is_resolved(self.order):
             return None
         bias, error = self.bias(pilot)
-        half = 2.0 ** -self.order_of(pilot)
+        half = 2.0**-pilot.order
         crossed = pilot.crossed(self.times)
         return outcome(crossed, pilot.paths, pilot.step / 2, half * bias, half * error)
 
@@ -288,7 +289,8 @@ class _Request:
 
     def halved(self, step, paths, label):
         """Run paths with a step and its half, on a noise of their own."""
-        return _Halving(step, paths, *self.passages(self.times, step, paths, label))
+        change, passage = self.passages(self.times, step, paths, label)
+        return _Halving(step, paths, self.order_of(step, paths, passage), change, passage)
 
     def passages(self, times, step, paths, label):
         """Return changes by halving a step, and passage times of the shape (m, 2, paths)."""

@@ -151,9 +151,8 @@ class Counting:
     at_once: float = 0.01
     nearer: float = 0.25  # chosen: the pilot's step is then so many times as long, ...
     pilot_steps: float = 1e9  # chosen: ... unless it takes more steps of paths than these
-    order_at_once: float = (
-        0.2  # chosen: below 0.25 and 0.22, of Brownian motion integrated once, twice
-    )
+    # chosen: below 0.25 and 0.22, those of Brownian motion that is integrated once and twice
+    order_at_once: float = 0.2
 
 
 @dataclass(frozen=True)

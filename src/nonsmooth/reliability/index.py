@@ -53,14 +53,14 @@ def reliability_index(crossing: xr.Dataset) -> xr.Dataset:
         )
     # near W = 1 the complement has more digits
     own = W >= 0.5 if "survival_error" in crossing else xr.zeros_like(W, dtype=bool)
-    survival, missed = crossing.get("survival", 1 - W), crossing.get("survival_error", error)
+    survival = crossing.get("survival", 1 - W)
     beta = xr.where(W < 0.5, -ndtri(W), ndtri(survival))
     # where W is 0 or 1 itself, so is beta infinite, and its error
     with np.errstate(invalid="ignore"):
         ends = [
             xr.where(
                 own,
-                ndtri((survival - sign * missed).clip(0, 1)),
+                ndtri((survival - sign * own_error).clip(0, 1)),
                 -ndtri((W + sign * error).clip(0, 1)),
             )
             for sign in (-1, 1)
