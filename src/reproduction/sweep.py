@@ -51,7 +51,8 @@ def crossing_bias(
     change, passage = coupled(
         scene, times, sampling, tuple(np.sqrt(nearest) * np.array(bounds(threshold)))
     )
-    bias, error = bias_of_counts(scene, times, passage)
+    order = registry.scheme(scene, "strang").weak_order(scene)
+    bias, error = bias_of_counts(times, passage, order)
     if p <= measured:
         return bias, error
     relative, relative_error = _bias_of_gamma2(scene, times, change)

@@ -86,32 +86,6 @@ def _outermost(levels, symmetric):
     return lower, upper
 
 
-def first_passage_bias(
-    scene: Scene,
-    threshold: float | tuple[float, float],
-    horizons: ArrayLike,
-    p: float,
-    sampling: Sampling,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Measure how halving the time step changes the crossing probability.
-
-    Parameters
-    ----------
-    scene, threshold, horizons, p
-        As for `first_passage_counts`.
-    sampling : Sampling
-        With the longer of the two steps.
-
-    Returns
-    -------
-    bias, error : numpy.ndarray, shape (k,)
-        Of the probability with the longer step, with its standard error.
-    """
-    times = p * np.asarray(horizons, dtype=float)
-    levels = np.sqrt(p) * np.array(bounds(threshold))
-    return bias_of_counts(scene, times, coupled_passages(scene, times, sampling, levels))
-
-
 def first_passage_shift(
     scene: Scene,
     threshold: float | tuple[float, float],
@@ -143,30 +117,27 @@ def first_passage_shift(
 
 
 def bias_of_counts(
-    scene: Scene, times: np.ndarray, passage: np.ndarray
+    times: np.ndarray, passage: np.ndarray, order: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Bias of the fraction crossed, from first-passage times on the same noise.
 
     Parameters
     ----------
-    scene : Scene
     times : numpy.ndarray, shape (k,)
-    passage : numpy.ndarray, shape (2, paths) or (m, 2, paths)
-        First-passage times with half the step and with the step, from `coupled_passages`; those
-        of several thresholds, from `coupled_crossings`.
+    passage : numpy.ndarray, shape (2, paths)
+        First-passage times with half the step and with the step, from `coupled_passages`.
+    order : float
+        The bias is of this order in the step.
 
     Returns
     -------
-    bias, error : numpy.ndarray, shape (k,) or (m, k)
+    bias, error : numpy.ndarray, shape (k,)
         Of the fraction with the longer step, with its standard error.
     """
-    if passage.ndim == 3:
-        found = [bias_of_counts(scene, times, own) for own in passage]
-        return np.array([bias for bias, _ in found]), np.array([error for _, error in found])
     fine, coarse = passage
     paths = len(fine)
     change = (coarse[:, None] <= times).astype(float) - (fine[:, None] <= times)
-    factor = bias_over_change(registry.scheme(scene, "strang").weak_order(scene))
+    factor = bias_over_change(order)
     # Even if all paths have the same outcome with both steps, the error is not 0: it is then that
     # of a single path with different outcomes.
     error = np.sqrt(np.maximum(change.var(axis=0), 1 / paths) / paths)

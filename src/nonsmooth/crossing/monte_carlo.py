@@ -11,7 +11,7 @@ from nonsmooth.crossing.proportions import crossing_estimate, limits_less_bias, 
 from nonsmooth.errors import ToleranceError
 from nonsmooth.paths.ensembles import coupled, coupled_crossings
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
-from nonsmooth.paths.moments import bias_over_change, step_bias, variance_of_fine
+from nonsmooth.paths.moments import step_bias, variance_of_fine
 from nonsmooth.paths.resolution import (
     coarse_step,
     refined_step,
@@ -208,9 +208,9 @@ class _Request:
 
     def bias(self, halving):
         """Bias of the longer step of a halving, and its standard error."""
-        more = bias_over_change(halving.order) / bias_over_change(self.order)
-        bias, error = bias_of_counts(self.scene, self.times, halving.passage)
-        return more * bias, more * error
+        each = zip(halving.passage, halving.order[:, 0], strict=True)
+        found = np.array([bias_of_counts(self.times, *own) for own in each])
+        return found[:, 0], found[:, 1]
 
     def answer_of_pilot(self, pilot):
         """Return values with half the step of the pilot, or None if they are too inaccurate."""

@@ -39,9 +39,9 @@ def proportion(
 
 
 def limits_less_bias(
-    crossed: np.ndarray, paths: int, bias: np.ndarray, bias_error: np.ndarray, level: float = 0.95
+    crossed: np.ndarray, paths: int, bias: np.ndarray, bias_error: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Confidence limits of a probability that is counted with a bias, which is known with an error.
+    """95 % limits of a probability that is counted with a bias, which is known with an error.
 
     The distances of Jeffreys' limits and that of the bias are added as squares (Zou and Donner,
     Statist. Med. 27, 2008), around the fraction less the bias. The interval is widened to contain
@@ -54,13 +54,12 @@ def limits_less_bias(
     paths : int
     bias, bias_error : numpy.ndarray, shape (k,)
         The expectation of the fraction less the probability, and the standard error of that.
-    level : float
-        Confidence level of the two-sided interval.
 
     Returns
     -------
     lower, upper : numpy.ndarray, shape (k,)
     """
+    level = 0.95
     fraction, low, high = proportion(crossed, paths, level)
     two_sided = scipy.special.ndtri((1 + level) / 2)
     below, above = (

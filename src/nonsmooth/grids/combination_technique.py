@@ -193,9 +193,10 @@ class Combination:
         self._add(best, self._evaluate(best))
         return costs[best]
 
-    def dearest(self) -> Index:
-        """Return the index in the set with the most expensive grid."""
-        return max(self._values, key=self._cost)
+    def dearest(self) -> tuple[Index, Functional]:
+        """Return the index in the set with the most expensive grid, and the functional there."""
+        index = max(self._values, key=self._cost)
+        return index, self._values[index]
 
 
 def _rest(earlier, last):

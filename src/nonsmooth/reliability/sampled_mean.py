@@ -109,7 +109,7 @@ class _Sample:
         fine, coarse = np.minimum(passage, horizon)
         count = len(fine)
         self.left = int(np.sum(~np.isfinite(passage[0])))
-        self._horizon, self._late = horizon, float(np.median(fine))
+        self._late = float(np.median(fine))
         crossed = np.sum((fine > self._late) & np.isfinite(passage[0]))
         exposure = np.sum(np.maximum(fine - self._late, 0.0))
         self._rate = max(float(crossed), 0.5) / max(exposure, np.finfo(float).tiny)

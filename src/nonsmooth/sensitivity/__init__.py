@@ -5,7 +5,7 @@
 - `first_passage`, `plane`, `differences`, `sampled`: the same of a `questions.Question`, by the
   differentiated equations of one and of two variables, by differences of solutions and by paths
   with common noise.
-- `line.elasticity`, `grids.elasticity`: with one state variable, and with more.
+- `line.slope`, `grids.slope`: with one state variable, and with more.
 - `parameters`: the parameters, and the derivatives of a scene's equations.
 - `tuning`: numbers that were chosen.
 """

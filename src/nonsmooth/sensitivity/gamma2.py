@@ -8,7 +8,6 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
 from nonsmooth.sensitivity import grids, line, tuning
 from nonsmooth.sensitivity.parameters import require_parameter_of, value_of
-from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 
 
 def asymptotic_variance_sensitivity(
@@ -68,22 +67,13 @@ def asymptotic_variance_sensitivity(
 def _solved(scene, parameter, tol):
     """Return derivative and error, and the name of the method."""
     if scene.is_line:
-        found = line.elasticity(scene, parameter, tol / 2)
-        slope, error, way = found.value, found.error, "differentiated equations"
+        way, method = "differentiated equations", line.slope
     else:
-        slope, error = grids.elasticity(scene, parameter, tol / 2)
-        way = "differentiated spectral elements"
-    # an error of gamma^2 matters less than one of the elasticity, which is of the order 1
-    try:
-        gamma2 = asymptotic_variance(scene, tol / (2 * max(1.0, abs(slope))), "deterministic")
-    except ToleranceError as refused:  # whether this is enough is seen below
-        if not isinstance(refused.result, Estimate):
-            raise
-        gamma2 = refused.result
+        way, method = "differentiated spectral elements", grids.slope
     unit = 1 / value_of(scene, parameter)
-    value = unit * slope * gamma2.value
-    total = unit * (error * (gamma2.value + gamma2.error) + abs(slope) * gamma2.error)
-    if not total <= tol * unit * gamma2.value:
+    slope, error, gamma2 = method(scene, parameter, tol)
+    value, total = unit * slope, unit * error
+    if not error <= tol * gamma2:
         raise ToleranceError(
             f"the derivative {value:.10g} has an error of {total:.1e}, above tol = {tol:g} "
             "relative to gamma^2 over the parameter; loosen tol",

@@ -11,6 +11,8 @@ On a grid this is the derivative of the gamma^2 of that grid.
 
 import numpy as np
 
+from nonsmooth.errors import ToleranceError
+from nonsmooth.estimate import Estimate
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.generator import assemble, evaluate
 from nonsmooth.grids.solver import EVEN, ODD
@@ -18,11 +20,12 @@ from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, solver
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.sensitivity import tuning
 from nonsmooth.sensitivity.parameters import change, derivative, value_of
+from nonsmooth.statistics.asymptotic_variance import asymptotic_variance
 from nonsmooth.statistics.combined_grids import combined
 
 
-def elasticity(scene: Scene, parameter: str, tol: float) -> tuple[float, float]:
-    """Return the derivative of log gamma^2 with respect to the logarithm of a parameter.
+def slope(scene: Scene, parameter: str, tol: float) -> tuple[float, float, float]:
+    """Return the derivative of gamma^2 with respect to the logarithm of a parameter.
 
     Parameters
     ----------
@@ -30,30 +33,50 @@ def elasticity(scene: Scene, parameter: str, tol: float) -> tuple[float, float]:
         With two to four state variables.
     parameter : str
     tol : float
-        Absolute error wanted.
+        Error wanted, relative to gamma^2.
 
     Returns
     -------
     value, error : float
-        The error is that of `uniform_refinement.refined`, at least that of log gamma^2 there, or
-        that of `combined`. It may be above `tol`.
+        The error is that of `uniform_refinement.refined`, at least that of gamma^2 there, or that
+        of `combined`. It may be above `tol`.
+    gamma2 : float
+        Only as exact as a tolerance has to be.
     """
     if uniform_refinement.applies(scene):
+
+        def relative(error, value):
+            # the derivative may agree on several grids by chance, but hardly gamma^2, too
+            return error[0] + max(1.0, abs(value[0])) * error[1]
+
         found = uniform_refinement.refined(
             fitted(scene, depth_for(tol), 1),
-            # the derivative may agree on several grids by chance, but hardly gamma^2, too
             lambda grid: (with_logarithm(scene, parameter, grid, tol), tuning.GRIDS.rounding),
-            lambda error, _: np.max(error) / tol,
+            lambda error, value: relative(error, value) / tol,
         )
         if found.met:
-            return float(found.value[0]), float(np.max(found.error))
-    rest = combined(
-        scene,
-        tol,
-        lambda scene, grid, accuracy: with_logarithm(scene, parameter, grid, accuracy)[0],
-        lambda value, tol: tol,
-    )
-    return rest.value, rest.error
+            gamma2 = float(np.exp(found.value[1]))
+            error = float(relative(found.error, found.value))
+            return float(found.value[0]) * gamma2, error * gamma2, gamma2
+    gamma2 = _roughly(scene)
+
+    def on(scene, grid, accuracy):
+        elasticity, logarithm = with_logarithm(scene, parameter, grid, accuracy)
+        return float(elasticity * np.exp(logarithm))
+
+    rest = combined(scene, tol, on, lambda value, tol: tol * gamma2)
+    return rest.value, rest.error, gamma2
+
+
+def _roughly(scene):
+    """Return gamma^2, to have a measure of its derivative; the value may be too low."""
+    try:
+        found = asymptotic_variance(scene, tuning.GRIDS.roughly, "deterministic")
+    except ToleranceError as refused:  # a derivative, if it is found, is exact all the same
+        if not isinstance(refused.result, Estimate):
+            raise
+        found = refused.result
+    return max(found.value - found.error, 0.0)
 
 
 def with_logarithm(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> np.ndarray:

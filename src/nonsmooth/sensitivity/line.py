@@ -13,7 +13,7 @@ import numpy as np
 
 from nonsmooth.line import spectral_elements
 from nonsmooth.line.potential import depth
-from nonsmooth.refine import Refined, until_agreement
+from nonsmooth.refine import until_agreement
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import y
@@ -21,8 +21,8 @@ from nonsmooth.sensitivity import tuning
 from nonsmooth.sensitivity.parameters import change_of_depth, derivative, value_of
 
 
-def elasticity(scene: Scene, parameter: str, tol: float) -> Refined:
-    """Return the derivative of log gamma^2 with respect to the logarithm of a parameter.
+def slope(scene: Scene, parameter: str, tol: float) -> tuple[float, float, float]:
+    """Return the derivative of gamma^2 with respect to the logarithm of a parameter.
 
     Parameters
     ----------
@@ -30,26 +30,32 @@ def elasticity(scene: Scene, parameter: str, tol: float) -> Refined:
         With the state y and white noise.
     parameter : str
     tol : float
-        Absolute error wanted.
+        Error wanted, relative to gamma^2.
 
     Returns
     -------
-    Refined
-        The error is the change by raising the degree of the elements, and rounding.
+    value, error : float
+        The error is what raising the degree of the elements changes, gamma^2 included, and
+        rounding. It may be above `tol`.
+    gamma2 : float
     """
     settings, scene = tuning.LINE, scene.with_start({})
     value = value_of(scene, parameter)
 
-    def solve(degree):
-        gamma2, slope = _gamma2_and_derivative(scene, parameter, degree)
-        return value * slope / gamma2
+    def error(found):
+        (coarse, before), (gamma2, last) = found[-2:]
+        # the derivative may agree for two degrees by chance, but hardly gamma^2, too
+        change = max(value * abs(last - before), abs(gamma2 - coarse))
+        return settings.safety * change + settings.rounding * gamma2
 
-    return until_agreement(
+    found = until_agreement(
         settings.degrees,
-        solve,
-        lambda found: settings.safety * abs(found[-1] - found[-2]) + settings.rounding,
-        lambda _, error: error <= tol,
+        lambda degree: _gamma2_and_derivative(scene, parameter, degree),
+        error,
+        lambda solution, error: error <= tol * solution[0],
     )
+    gamma2, last = found.value
+    return value * last, found.error, gamma2
 
 
 def _gamma2_and_derivative(scene, parameter, degree):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class Gamma2:
     """The derivative of gamma^2."""
 
-    # chosen: errors of the elasticity for one to four variables unless the user asks for others
+    # chosen: errors relative to gamma^2 for one to four variables unless the user asks for others
     tolerance: tuple[float, ...] = (1e-8, 1e-5, 2e-3, 2e-2)
 
 
@@ -24,7 +24,8 @@ class Line:
 class Grids:
     """Tensor grids."""
 
-    rounding: float = 1e-9  # chosen: of the elasticity; sparse factors lose some digits
+    rounding: float = 1e-9  # chosen: relative to gamma^2; sparse factors lose some digits
+    roughly: float = 0.1  # chosen: relative error of the gamma^2 that a tolerance is relative to
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,8 @@ class Combined:
         With the n that was solved with.
     grid : Grid
         The costliest of those combined.
+    there : float
+        The functional on this grid alone.
     accuracy : float
         Residual of the solvers.
     """
@@ -41,6 +43,7 @@ class Combined:
     error: float
     scene: Scene
     grid: Grid
+    there: float
     accuracy: float
 
 
@@ -110,9 +113,7 @@ def _extrapolated(stiff, tol, functional, allowed, floor, first):
     found = _combined(stiff, tol / 2, functional, allowed, floor, first)
     fitted_below = replace(found.grid, ends=narrowed(softer, found.grid.ends, found.grid.ends))
     try:
-        gap = functional(found.scene, found.grid, found.accuracy) - functional(
-            softer, fitted_below, found.accuracy
-        )
+        gap = found.there - functional(softer, fitted_below, found.accuracy)
     except ToleranceError:  # how far the limit is from the value for the large n remains unknown
         return replace(found, error=math.inf)
     rest = gap / ((10 if elastic else 100) - 1)
@@ -167,10 +168,10 @@ def _combined(scene, tol, functional, allowed, floor, first):
     def vain(combination):
         return combination.error <= chosen.others * allowed(combination.value, tol)
 
-    value, bound, index = _enlarge(
+    value, bound, (index, there) = _enlarge(
         combination, error, enough, no_digit, vain, largest, 1 + len(directions)
     )
-    return Combined(value, bound, scene, grid(index), accuracy)
+    return Combined(value, bound, scene, grid(index), there, accuracy)
 
 
 def _box_effect(coarse, base, on):
@@ -202,8 +203,8 @@ def _enlarge(combination, error, enough, no_digit, vain, largest, patience):
     There is none if nothing affordable is left, or what is in the way is not the grid, or no digit
     is right and refining every variable has not made the error smaller.
 
-    Return value, error and costliest grid when it was enough, or else when the error was least: on
-    very fine grids rounding may grow.
+    Return value, error and `Combination.dearest` when it was enough, or else when the error was
+    least: on very fine grids rounding may grow.
     """
 
     def state():

@@ -133,8 +133,13 @@ def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tup
         The error is computed as if the variances at both times were independent, which makes it
         larger than the slope's own.
     """
+    return _bias_of_slope(step_bias, scene, times, sampling)
+
+
+def _bias_of_slope(biased, scene, times, sampling):
+    """Bias of the slope of a moment by the time step, and its standard error."""
     change, _ = coupled(scene, [times[0], times[-1]], sampling)
-    bias, error = step_bias(change, registry.scheme(scene, sampling.scheme).weak_order(scene))
+    bias, error = biased(change, registry.scheme(scene, sampling.scheme).weak_order(scene))
     span = times[-1] - times[0]
     return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
 
@@ -227,7 +232,7 @@ def sampled_mean(
         sampling = Sampling(step, paths, own, threads=threads)
         times, found = _settled(scene, sampling)
         halving = replace(sampling.labelled("halving"), paths=halving_paths(paths))
-        bias, spread = _mean_bias(scene, times, halving, order)
+        bias, spread = _bias_of_slope(mean_bias, scene, times, halving)
         deviation = math.hypot(found.mean_error, spread)
         error = abs(bias) + deviation
         if tol is None or abs(bias) + MONTE_CARLO.sigmas * deviation <= tol:
@@ -239,14 +244,6 @@ def sampled_mean(
         require_possible(more, times[-1] / shorter, told, tol, result=known)
         paths, step = max(paths, more), shorter
     raise ToleranceError(f"{told}, above tol = {tol:g}; loosen tol", known)
-
-
-def _mean_bias(scene, times, sampling, order):
-    """Bias of the slope of the mean by the time step, and its standard error."""
-    change, _ = coupled(scene, [times[0], times[-1]], sampling)
-    bias, error = mean_bias(change, order)
-    span = times[-1] - times[0]
-    return float(bias[1] - bias[0]) / span, float(np.hypot(*error)) / span
 
 
 def short_step(scene: Scene) -> float:

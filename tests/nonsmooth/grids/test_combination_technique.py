@@ -39,7 +39,7 @@ def test_the_error_bounds_the_limit(rates):
     while combination.error > 1e-3:
         assert combination.refine(float("inf"))
         # two surpluses of each variable tell how slowly they shrink
-        if not slow or min(combination.dearest()) > 2:
+        if not slow or min(combination.dearest()[0]) > 2:
             assert abs(combination.value - 1) <= combination.error * (1 + 1e-9)
     assert combination.error > 0
 
@@ -50,8 +50,10 @@ def test_levels_are_raised_where_they_matter():
     combination = Combination((1, 1), functional((1, 1)), functional, lambda i: 2.0 ** sum(i))
     while combination.error > 1e-4:
         combination.refine(float("inf"))
-    assert combination.dearest()[0] > 8
-    assert combination.dearest()[1] <= 2
+    (fine, coarse), there = combination.dearest()
+    assert fine > 8
+    assert coarse <= 2
+    assert there == functional((fine, coarse))
 
 
 def test_what_costs_too_much_is_left_out():
