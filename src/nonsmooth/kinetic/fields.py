@@ -49,9 +49,8 @@ def fields(
 
     Returns
     -------
-    list of numpy.ndarray, shape (k, m)
-        For each thickness, h at many depths, on the nodes with g > 0 or their mirror images; depths
-        crowd at the faces.
+    list of Fields
+        For each thickness, h at many depths, which crowd at the faces, and adjoint solutions.
 
     Raises
     ------
@@ -170,7 +169,7 @@ def require_bounded(grid: PlaneOrdinates, found: list[Fields]) -> None:
     Parameters
     ----------
     grid : PlaneOrdinates
-    found : list of numpy.ndarray, shape (k, m)
+    found : list of Fields
         As `fields` returns them.
 
     Raises

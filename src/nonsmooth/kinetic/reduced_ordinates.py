@@ -3,9 +3,9 @@
 The solutions h(x, .; z) of (z - A) h = g d_x h in a slab, at all depths x and for all z of
 interest, lie close to a space of few dimensions. A basis V of it is taken from solutions at a few
 real z (`fields`), and from those of the adjoint equation with a source at the start, by a singular
-value decomposition. It holds values where g > 0 and
-their mirror images, so that what is given at the faces is a combination of V, too. In the inner
-product weighted by the invariant measure times |g|, V is orthonormal, and Galerkin's method leaves
+value decomposition. It holds values where g > 0 and their mirror images, so that what is given at
+the faces is a combination of V, too. In the inner product weighted by the invariant measure times
+|g|, V is orthonormal, and Galerkin's method leaves
 
     E e = o',    O o = e',    E = V'(z - A)V on even functions, O on odd ones,
 
