@@ -10,6 +10,7 @@ wall, so that no exponential is large.
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg
 
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
@@ -81,6 +82,32 @@ def modes(grid: Ordinates, z: complex) -> "ModesOfWalls":
     )
 
 
+def modes_at_real(grid: Ordinates, z: float) -> "ModesOfWalls":
+    """Compute the modes at a real place, where they are those of symmetric matrices.
+
+    Parameters
+    ----------
+    grid : Ordinates
+        Whole.
+    z : float
+        Positive, and not so small that z - A is singular by rounding.
+
+    Returns
+    -------
+    ModesOfWalls
+    """
+    matrix = grid.stiffness[EVEN] + z * np.diag(grid.masses)
+    scale = 1 / np.sqrt(np.diag(matrix))
+    inverses, vectors = scipy.linalg.eigh(
+        np.diag(grid.masses * grid.g * scale**2), matrix * np.outer(scale, scale)
+    )
+    moving = grid.moving
+    # the others belong to nodes with g = 0
+    found = np.sort(np.argsort(-np.abs(inverses))[: len(moving)])
+    vectors = scale[:, None] * vectors[:, found]
+    return _told_apart(grid, 1 / inverses[found], vectors[moving], grid.start[EVEN] @ vectors)
+
+
 def _pairs(regular, drift, flux, z, balance):
     """Eigenpairs of regular + drift flux / z, and flux @ vectors / z.
 
@@ -127,7 +154,12 @@ def _of_all(grid, resolvent, balance):
     moving = grid.moving
     inverses, vectors = _eigen(resolvent[moving], balance)
     rates = 1 / inverses
-    start = grid.start[EVEN] @ (rates * (resolvent @ vectors))
+    return _told_apart(grid, rates, vectors, grid.start[EVEN] @ (rates * (resolvent @ vectors)))
+
+
+def _told_apart(grid, rates, vectors, start):
+    """Tell modes that decay from the upper wall from those of the lower, on a whole grid."""
+    moving = grid.moving
     vectors = np.sqrt(grid.masses[moving])[:, None] * vectors
     up = grid.g[moving] > 0
     decay = rates.real > 0
@@ -205,27 +237,41 @@ class ModesOfWalls:
         -------
         numpy.ndarray, shape (2,)
         """
-        grid, above, below = self.grid, self.above, self.below
-        weights = np.sqrt(grid.masses[grid.moving])
-        if grid.mirrored:
-            even, odd = (
-                np.linalg.solve(above.own + sign * _arriving(above, upper - lower), weights / 2)
-                for sign in (1, -1)
-            )
-            strengths = np.block([[even + odd, even - odd], [even - odd, even + odd]])
-            strengths = strengths.reshape(2, -1).T
-        else:
-            leaves = grid.g[grid.moving] > 0
-            right = np.zeros((len(weights), 2))
-            many = len(above.rates)
-            if many != np.sum(leaves):  # as where g has a pole
-                raise np.linalg.LinAlgError("the modes of both walls are not told apart")
-            right[:many, 0], right[many:, 1] = weights[leaves], weights[~leaves]
-            strengths = np.linalg.solve(_at_both_walls(above, below, upper - lower), right)
+        above, below = self.above, self.below
         start = np.append(
             above.start * np.exp(-above.rates * upper), below.start * np.exp(below.rates * lower)
         )
-        return start @ strengths
+        return start @ self.strengths(upper - lower)
+
+    def strengths(self, distance: float) -> np.ndarray:
+        """Strengths of all modes if h = 1 where the flow leaves at one of the walls, 0 elsewhere.
+
+        Parameters
+        ----------
+        distance : float
+            Between the walls.
+
+        Returns
+        -------
+        numpy.ndarray, shape (n, 2)
+            First those of the upper wall; columns for paths that leave there, and at the lower one.
+        """
+        grid, above, below = self.grid, self.above, self.below
+        ones = grid.ones
+        if grid.mirrored:
+            even, odd = (
+                np.linalg.solve(above.own + sign * _arriving(above, distance), ones / 2)
+                for sign in (1, -1)
+            )
+            strengths = np.block([[even + odd, even - odd], [even - odd, even + odd]])
+            return strengths.reshape(2, -1).T
+        leaves = grid.g[grid.moving] > 0
+        right = np.zeros((len(ones), 2))
+        many = len(above.rates)
+        if many != np.sum(leaves):  # as where g has a pole
+            raise np.linalg.LinAlgError("the modes of both walls are not told apart")
+        right[:many, 0], right[many:, 1] = ones[leaves], ones[~leaves]
+        return np.linalg.solve(_at_both_walls(above, below, distance), right)
 
     def waves(self, lower: float, upper: float) -> tuple[Waves, Waves]:
         """E exp(-z tau) as a function of the place in (lower, upper) at which int_0^t g begins.
@@ -241,7 +287,7 @@ class ModesOfWalls:
             Of the upper and of the lower wall; none where the wall is infinitely far.
         """
         grid, above, below = self.grid, self.above, self.below
-        g, weights = grid.g[grid.moving], np.sqrt(grid.masses[grid.moving])
+        g, weights = grid.g[grid.moving], grid.ones
         up, down = (slice(None),) * 2 if grid.mirrored else (g > 0, g < 0)
         none = Waves(np.zeros(0), np.zeros(0))
         if np.isinf(lower):

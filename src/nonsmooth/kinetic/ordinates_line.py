@@ -50,6 +50,11 @@ class Ordinates:
         """Indices of the nodes with g != 0."""
         return np.flatnonzero(self.g)
 
+    @property
+    def ones(self) -> np.ndarray:
+        """The function 1 at the nodes that move, times the root of the masses."""
+        return np.sqrt(self.masses[self.moving])
+
     def resolvent(self, z: complex, parity: int, values: np.ndarray) -> np.ndarray:
         """Solve (z - A) u = f; for z = 0 and even functions, -A u = f - E f with E u = 0.
 

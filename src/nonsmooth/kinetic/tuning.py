@@ -186,6 +186,21 @@ class TailEquation:
     exponents: int = 49  # chosen: exponents theta tried for that bound, over six decades
 
 
+@dataclass(frozen=True)
+class ReducedLine:
+    """Bases of one state variable on a vertical line."""
+
+    apart: float = 16.0  # chosen: ratio of the heights at which a basis is checked
+    most: int = 8  # chosen: number of these heights
+    octaves: int = 10  # chosen: depths of solutions are down to 2^-10 of the distance of the walls
+    even: int = 10  # chosen: and so many of it are equally far apart
+    vanishing: float = 1e-12  # derived: functions so small, relative to others, are rounding
+    adjoint: float = 100.0  # chosen: what is left out of adjoint solutions over that of solutions
+    shares: tuple[float, ...] = (3.0, 0.3)  # chosen: parts of the accuracy that are left out
+    checked: float = 0.3  # chosen: part of the accuracy up to which a basis may be off
+    fewer: float = 0.75  # chosen: largest number of functions over that of nodes
+
+
 LINE_ORDINATES = LineOrdinates()
 CASE_MODES = CaseModes()
 ADJOINT = Adjoint()
@@ -193,5 +208,6 @@ PLANE_ORDINATES = PlaneOrdinates()
 FIELDS = Fields()
 DOUBLED_SLABS = DoubledSlabs()
 REDUCED_ORDINATES = ReducedOrdinates()
+REDUCED_LINE = ReducedLine()
 TAIL_DESCENT = TailDescent()
 TAIL_EQUATION = TailEquation()

@@ -7,8 +7,9 @@ from scipy import special
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import line
 from nonsmooth.errors import AccuracyWarning, SceneError, ToleranceError
-from nonsmooth.kinetic import case_modes, fields
-from nonsmooth.kinetic.reduced_ordinates import ReducedOrdinates
+from nonsmooth.kinetic import case_modes
+from nonsmooth.kinetic.bases import fields
+from nonsmooth.kinetic.bases.reduced_ordinates import ReducedOrdinates
 from references import COLORED_FRICTION, FRICTION, GAMMA2, OBSTACLE, SKEWED, W_STAR
 
 HORIZONS = np.linspace(0, 2, 11)[1:]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nonsmooth.kinetic.case_modes import modes
+from nonsmooth.kinetic.case_modes import modes, modes_at_real
 from nonsmooth.kinetic.ordinates_line import ordinates
 from references import FRICTION, MIRRORED, SKEWED
 
@@ -38,3 +38,13 @@ def test_the_nearer_exit_is_taken_more_often():
     upper, lower = modes(grid, 0.5).by_exit(-0.3, 0.6).real
     assert lower > upper
     assert np.allclose(modes(grid, 0.5).by_exit(-0.6, 0.3).real, [lower, upper], rtol=1e-9)
+
+
+@pytest.mark.parametrize("z", [0.01, 0.7, 30.0])
+def test_modes_at_real_places_are_those_of_symmetric_matrices(z):
+    """The same decay, and the same transform, by a matrix that is not symmetric."""
+    grid = ordinates(SKEWED, 6, 0.1)
+    own, other = modes_at_real(grid, z), modes(grid, z)
+    assert np.allclose(own.by_exit(-0.3, 0.6), other.by_exit(-0.3, 0.6), rtol=1e-9, atol=0)
+    slow = np.sort(own.above.rates)[:20]
+    assert np.allclose(slow, np.sort(other.above.rates.real)[:20], rtol=1e-8)

@@ -346,7 +346,7 @@ def _solver(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> Solv
         return contour_solver(problem, times, tol)
     assert isinstance(problem, DirectProblem)
     everywhere = np.full(len(times), True)
-    return lambda level, known, wanted: (problem.solve(times, level), everywhere)
+    return lambda level, known, wanted: (problem.solve(times, level), everywhere, 0.0 * times)
 
 
 class _Refinement:
@@ -361,11 +361,13 @@ class _Refinement:
         self._found = np.array([np.zeros(len(times)), np.ones(len(times))])
         self._wanted = np.full(len(times), True)
         self._change: float | np.ndarray = 0.0
+        self._inexact = np.zeros(len(times))
         self._worst = np.inf
 
     def solution(self, level):
         """Solve on a level."""
-        self._found, solved = self._solve(level, self._found, self._wanted)
+        self._found, solved, inexact = self._solve(level, self._found, self._wanted)
+        self._inexact = np.where(solved, inexact, self._inexact)
         return self._found, solved
 
     def error(self, solutions):
@@ -375,7 +377,7 @@ class _Refinement:
         solution = np.clip(found, 0.0, 1.0)
         # values are compared before they are clipped: two levels that failed may agree afterwards
         change = refinement.safety * np.abs(found - coarse) + np.abs(found - solution)
-        change += refinement.by_chance * self.tol * solution
+        change += refinement.by_chance * self.tol * solution + self._inexact
         self._change = np.where(solved, change, self._change)
         return _with_floors(self.problem, self.times, solution, self._change)
 

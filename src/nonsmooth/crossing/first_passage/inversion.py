@@ -26,7 +26,7 @@ from nonsmooth.crossing.first_passage import contours, tuning, vertical_lines
 from nonsmooth.crossing.first_passage.problem import ContourLevel, LaplaceProblem
 from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, saddle_points
 
-Solver = Callable[[ContourLevel, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+Solver = Callable[[ContourLevel, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 
 def contour_solver(
@@ -49,7 +49,8 @@ def contour_solver(
     callable
         Takes a level of the problem, what is known so far, shape (2, k), and at which times more is
         wanted, shape (k,). Solves the windows with such a time anew. Returns probability and
-        survival probability, shape (2, k), and at which times they are new.
+        survival probability, shape (2, k), at which times they are new, and the part of their
+        errors there that is not due to the grid, shape (k,).
     """
     return contour_solvers([problem], times, tol, None if saddles is None else [saddles])[0]
 
@@ -114,6 +115,7 @@ class _Inversion:
         self.problem, self.times, self.saddles = problem, times, saddles
         self.level, self.known, self.wanted = level, known, wanted
         self.found, self.solved = known.copy(), np.full(len(times), False)
+        self.inexact = np.zeros(len(times))
 
     def run(self):
         """Solve the stages one after the other."""
@@ -127,7 +129,7 @@ class _Inversion:
         self._later(windows)
         if ends:
             self._end(risen)
-        return self.found, self.solved
+        return self.found, self.solved, self.inexact
 
     def _windows_of_later(self, begin, end):
         """Return windows that hyperbolas serve, each with the kind of hyperbola."""
@@ -263,13 +265,21 @@ class _OnVerticalLines(_Inversion):
         settings, saddles = tuning.VERTICAL_LINES, self.saddles
         turn = self.problem.settings.levels.index(self.level) % 2
         first, last, rarity = self.needs[abscissa if rising else None]
-        parts, fronts = self.problem.parts(self.level.resolution, np.array([first, last]), rarity)
+        of_grid = self.level.resolution, np.array([first, last]), rarity
+        parts, fronts = self.problem.parts(*of_grid)
         values = np.zeros(here.stop - here.start)
         if self.times[here.stop - 1] > fronts.min():
             begun = saddles.begin(abscissa, settings.negligible * min(accuracy, 1.0))
+            line = vertical_lines.line(parts, abscissa)
+            # in the rise F is smaller than what bases leave out
+            if not rising and accuracy > settings.best:
+                parts, off = self.problem.parts_on_line(*of_grid, abscissa, accuracy)
+                self.inexact[here] = (
+                    settings.inverse * off * line.size * np.exp(abscissa * self.times[here])
+                )
             values = vertical_lines.inverted(
                 parts,
-                vertical_lines.line(parts, abscissa),
+                line,
                 np.maximum(fronts, begun),
                 accuracy,
                 rising,

@@ -10,6 +10,7 @@ import numpy as np
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import ContourSettings, LaplaceProblem
 from nonsmooth.kinetic import tail_equation
+from nonsmooth.kinetic.bases.reduced_line import on_line
 from nonsmooth.kinetic.case_modes import modes
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.tail_descent import Tail
@@ -38,11 +39,26 @@ class Intervals:
         self.problems = [LineProblem(scene, lower, upper, self) for lower, upper in ends]
         # by polynomial degree, shortest time, reach and depth
         self.grid = cache(partial(ordinates, scene, distances=nearest))
-        self.parts = cache(self._parts)
+        self.parts, self.on_line = cache(self._parts), cache(self._on_line)
 
-    def _parts(self, of_grid, z):
-        """Parts of the transform at a place for each interval."""
-        found = modes(self.grid(*of_grid), z)
+    def _on_line(self, of_grid, abscissa, accuracy):
+        """Return what `reduced_line.on_line` does, or the grid if that is small or folded."""
+        grid = self.grid(*of_grid)
+        two_sided = all(problem.two_sided for problem in self.problems)
+        if grid.mirrored or not two_sided or len(grid.moving) < tuning.LINE_GRIDS.many:
+            return grid, 0.0
+        intervals = [(problem.lower, problem.upper) for problem in self.problems]
+
+        def exact(z):
+            found = self.parts(of_grid, z)
+            return np.array([found[interval] for interval in intervals])
+
+        return on_line(grid, intervals, exact, abscissa, accuracy)
+
+    def _parts(self, of_grid, z, line=None):
+        """Parts of the transform at a place for each interval, if need be on a line alone."""
+        grid = self.grid(*of_grid) if line is None else self.on_line(of_grid, *line)[0]
+        found = modes(grid, z)
         return {
             (problem.lower, problem.upper): found.by_exit(problem.lower, problem.upper)
             if problem.is_split
@@ -150,6 +166,19 @@ class LineProblem(_OfLine):
         if not self.is_split:
             fronts = fronts[np.isfinite(distances)][:1]
         return lambda z: self.intervals.parts(of_grid, z)[self.lower, self.upper], fronts
+
+    def parts_on_line(
+        self,
+        resolution: int,
+        times: np.ndarray,
+        rarity: float,
+        abscissa: float,
+        accuracy: float,
+    ) -> tuple[Callable[[complex], np.ndarray], float]:
+        """Parts of F on a vertical line alone; see `LaplaceProblem`."""
+        of_grid, line = self.fitting(resolution, times, rarity), (abscissa, accuracy)
+        _, inexact = self.intervals.on_line(of_grid, *line)
+        return lambda z: self.intervals.parts(of_grid, z, line)[self.lower, self.upper], inexact
 
     def _on_grid(self, *of_grid):
         grid = self.intervals.grid(*of_grid)

@@ -17,7 +17,9 @@ from nonsmooth.crossing.first_passage.problem import (
 from nonsmooth.crossing.first_passage.saddle_points import SaddlePoints, in_common, saddle_points
 from nonsmooth.errors import ToleranceError
 from nonsmooth.grids.generator import Change
-from nonsmooth.kinetic import doubled_slabs, fields, ordinates_gibbs
+from nonsmooth.kinetic import ordinates_gibbs
+from nonsmooth.kinetic.bases import doubled_slabs, fields
+from nonsmooth.kinetic.bases.reduced_ordinates import Fields, ReducedOrdinates, joined, reduced
 from nonsmooth.kinetic.marching.split_step import IMAGINARY
 from nonsmooth.kinetic.marching.tensor import TensorOrdinates, tensor_ordinates
 from nonsmooth.kinetic.ordinates_gibbs import gibbs_ordinates
@@ -27,7 +29,6 @@ from nonsmooth.kinetic.ordinates_plane import (
     boxed,
     plane_ordinates,
 )
-from nonsmooth.kinetic.reduced_ordinates import Fields, ReducedOrdinates, joined, reduced
 from nonsmooth.refine import solvable
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
@@ -424,7 +425,7 @@ def inverted(
     def solved(resolution):
         *grid, contour = resolution
         level = tuning.PLANE.levels[contour]._replace(resolution=tuple(grid))
-        found, _ = solve(level, nothing, here)
+        found, *_ = solve(level, nothing, here)
         # contours that serve others may not serve it yet
         found[:, :begin], found[:, ~here] = nothing[:, :begin], nothing[:, ~here]
         return found

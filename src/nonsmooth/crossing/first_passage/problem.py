@@ -185,6 +185,29 @@ class LaplaceProblem(FirstPassageProblem):
         transform = self.transform(resolution, times, rarity)
         return lambda z: np.array([transform(z)]), np.zeros(1)
 
+    def parts_on_line(
+        self, resolution: Any, times: np.ndarray, rarity: float, abscissa: float, accuracy: float
+    ) -> tuple[Callable[[complex], np.ndarray], float]:
+        """Parts of F at many places of a vertical line, as cheaply as an accuracy allows.
+
+        Parameters
+        ----------
+        resolution, times, rarity
+            As for `transform`.
+        abscissa : float
+            Re z; positive.
+        accuracy : float
+            Wanted of F, relative to its value on the real axis.
+
+        Returns
+        -------
+        parts : callable
+            As of `parts`.
+        inexact : float
+            What they are off, relative to that value.
+        """
+        return self.parts(resolution, times, rarity)[0], 0.0
+
     @abstractmethod
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:
         """Return F on a coarse grid, good to a few digits, for the choice of contours.

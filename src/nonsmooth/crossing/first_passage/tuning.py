@@ -114,6 +114,8 @@ class VerticalLines:
     rising: float = 1e-7  # chosen: ... also in the rise, where F is rounded more
     negligible: float = 0.1  # chosen: a share of F below so much of the accuracy counts as none
     relative: float = 1e-6  # chosen: in the rise, where small probabilities keep relative accuracy
+    # chosen: error of an inverse over that of F and exp(s t), a logarithm of heights over pi
+    inverse: float = 3.0
     # chosen: of neighbouring lines in the rise; a bound is then at most some 100 times Chernoff's
     ratio: float = 4.0
 
@@ -146,6 +148,7 @@ class LineGrids:
     coarse: int = 6  # chosen: polynomial degree for the choice of contours
     spare: float = 18.0  # chosen: what is neglected is exp(-18) of the probability
     depth: float = 26.0  # chosen: the grid ends where the density is exp(-26) of the probability
+    many: int = 100  # chosen: nodes from which on a basis of few functions may be quicker
     similar: float = 4.0  # chosen: walls share grids if they are at most so many times as far
 
 

@@ -1,7 +1,7 @@
 """Derivatives of E exp(-z tau) for two state variables, in the basis of few ordinates.
 
-Even and odd parts solve E e = o' and O o = e' (`kinetic.reduced_ordinates`). If E and O change by
-dE and dO, the parts change by solutions of
+Even and odd parts solve E e = o' and O o = e' (`kinetic.bases.reduced_ordinates`). If E and O
+change by dE and dO, the parts change by solutions of
 
     E de = do' - dE e,    O do = de' - dO o,    0 where the flow leaves.
 
@@ -17,8 +17,8 @@ basis this is the derivative of what `reduced_ordinates` computes.
 import numpy as np
 
 from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.kinetic.bases.reduced_ordinates import ReducedModes, ReducedOrdinates
 from nonsmooth.kinetic.derivatives.exponentials import against, along
-from nonsmooth.kinetic.reduced_ordinates import ReducedModes, ReducedOrdinates
 
 
 def differentiated(

@@ -7,7 +7,7 @@ import nonsmooth as ns
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.crossing.first_passage.plane import PlaneProblem
 from nonsmooth.errors import ToleranceError
-from nonsmooth.kinetic import fields
+from nonsmooth.kinetic.bases import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC
 
 

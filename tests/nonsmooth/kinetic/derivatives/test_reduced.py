@@ -9,9 +9,9 @@ import pytest
 from nonsmooth.central_differences import central
 from nonsmooth.grids.generator import Change
 from nonsmooth.grids.solver import EVEN, ODD
+from nonsmooth.kinetic.bases.fields import fields
+from nonsmooth.kinetic.bases.reduced_ordinates import joined, reduced, unreduced
 from nonsmooth.kinetic.derivatives.reduced import differentiated
-from nonsmooth.kinetic.fields import fields
-from nonsmooth.kinetic.reduced_ordinates import joined, reduced, unreduced
 from nonsmooth.sensitivity.parameters import PARAMETERS, change, value_of
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from support import coarse_ordinates

@@ -18,8 +18,8 @@ from scipy.linalg import lu_factor, lu_solve
 
 from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic import tuning
+from nonsmooth.kinetic.bases.reduced_ordinates import Fields, ReducedModes, unreduced
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, UnstableError
-from nonsmooth.kinetic.reduced_ordinates import Fields, ReducedModes, unreduced
 
 
 def fields(

@@ -9,10 +9,10 @@ import scipy.sparse as sp
 import nonsmooth as ns
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import case_modes
-from nonsmooth.kinetic.fields import fields
+from nonsmooth.kinetic.bases.fields import fields
+from nonsmooth.kinetic.bases.reduced_ordinates import Fields, joined, reduced, unreduced
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
-from nonsmooth.kinetic.reduced_ordinates import Fields, joined, reduced, unreduced
 from nonsmooth.kinetic.tuning import PlaneLevel
 from references import COLORED_FRICTION, FRICTION, OBSTACLE, PLASTIC_STRAIN
 from slabs import slab

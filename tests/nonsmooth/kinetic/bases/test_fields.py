@@ -9,9 +9,9 @@ import scipy.sparse as sp
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage.plane import SharedGrids
 from nonsmooth.grids.solver import EVEN
-from nonsmooth.kinetic import doubled_slabs, fields
+from nonsmooth.kinetic.bases import doubled_slabs, fields
+from nonsmooth.kinetic.bases.reduced_ordinates import joined, reduced
 from nonsmooth.kinetic.ordinates_plane import UnstableError
-from nonsmooth.kinetic.reduced_ordinates import joined, reduced
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC_STRAIN
 from slabs import slab
 from support import coarse_ordinates

@@ -20,9 +20,9 @@ from scipy.linalg import lu_factor, lu_solve
 
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
-from nonsmooth.kinetic.fields import both_directions, is_source, require_bounded
+from nonsmooth.kinetic.bases.fields import both_directions, is_source, require_bounded
+from nonsmooth.kinetic.bases.reduced_ordinates import Fields, unreduced
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
-from nonsmooth.kinetic.reduced_ordinates import Fields, unreduced
 from nonsmooth.linear_algebra.effort import spend
 
 
@@ -95,7 +95,7 @@ def fields(
 ) -> list[Fields]:
     """Solve the kinetic equation in a slab, with h = 1 where the flow leaves.
 
-    Parameters, results and what is raised are those of `kinetic.fields.fields`.
+    Parameters, results and what is raised are those of `kinetic.bases.fields.fields`.
     """
     flow = np.sqrt(grid.masses * np.abs(grid.speeds))
     ones = flow * grid.ones[: len(flow)]
