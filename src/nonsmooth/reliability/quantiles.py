@@ -32,6 +32,7 @@ from nonsmooth.reliability.roots import (
     RISING,
     Root,
     Values,
+    around,
     equivalent,
     root_on_grid,
     searched,
@@ -237,7 +238,8 @@ def failure_time(
 
     def solve():
         guesses = [guess(P) for P in targets]
-        return ask.roots(list(targets), guesses, curves, together, brownian, RISING)
+        beside = tuning.SEARCH.beside
+        return ask.roots(list(targets), guesses, curves, together, brownian, RISING, beside)
 
     with limited(tol):
         return answered(solve, present, tol_given=tol is not None)
@@ -321,12 +323,14 @@ class _Question:
         together: Callable[[dict[int, np.ndarray], float | None], dict[int, Values]],
         reference: Callable[[float], float],
         sense: int,
+        beside: float = 0.0,
     ) -> list[Root]:
         """Find where W takes the values `targets`.
 
         By Monte Carlo those of one tolerance on the same paths, from `curves`, which returns W for
         each target; otherwise those of one tolerance together, from `together`, which takes x for
-        the numbers of some targets. The reference is W of Brownian motion.
+        the numbers of some targets. The reference is W of Brownian motion. At the distance `beside`
+        in log x of the first x, W costs nothing more.
         """
         # otherwise the method follows from the scene
         named = bool({"method", "order"} & self._given.keys())
@@ -342,12 +346,12 @@ class _Question:
 
         try:
             if not sampled and not named:
-                solved({k: np.array(guess[:1]) for k, guess in enumerate(guesses)})
+                solved({k: around(guess[0], beside) for k, guess in enumerate(guesses)})
                 sampled = SAMPLED in self.attributes["method"].split(", ")
             if not sampled:
                 searches = [
-                    searched(reference, target, guess, sense)
-                    for target, guess in zip(targets, guesses, strict=True)
+                    searched(reference, target, guess, sense, tol or 0.0, beside)
+                    for target, guess, tol in zip(targets, guesses, tolerances, strict=True)
                 ]
                 found = solved_roots(searches, solved)
         except ToleranceError:  # the solver found nothing, or not within its effort

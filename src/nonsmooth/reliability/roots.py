@@ -110,6 +110,8 @@ def searched(
     target: float,
     guess: tuple[float, float],
     sense: int,
+    tol: float = 0.0,
+    beside: float = 0.0,
 ) -> Search:
     """Search a root by the secant method, from few values of W.
 
@@ -127,10 +129,14 @@ def searched(
         Of x, and of the slope.
     sense : {RISING, FALLING}
         Of W in x.
+    tol : float, optional
+        Error of W that is good enough, if values are better than that.
+    beside : float, optional
+        Distance in log x to two places beside the guess at which W is wanted, too.
 
     Yields
     ------
-    numpy.ndarray, shape (1,)
+    numpy.ndarray, shape (1,) or (3,)
         x > 0, of which it is sent the `Values`.
 
     Returns
@@ -147,27 +153,36 @@ def searched(
     x, left, right = guess[0], 0.0, np.inf
     points: list[_Point] = []
     known: tuple[_Point, float, float] | None = None
-    for _ in range(search.most):
+    for number in range(search.most):
+        places = np.array([x]) if number or not beside else around(x, beside)
         try:
-            values = yield np.array([x])
+            values = yield places
         except ToleranceError:
             root = None if known is None else _by_slope(*known, np.inf)
             if root is None:
                 raise
             return root  # with wider limits
-        points.append(_point(np.log(x), values, reference, sense, wanted))
+        for place, *one in zip(np.log(places), *values, strict=True):
+            points.append(
+                _point(place, one, tol, lambda W: equivalent(reference, W, sense) - wanted)
+            )
         base = min(points, key=lambda point: abs(point.gap))
         slope, doubt = _slope(points, base, guess[1])
         known = base, slope, doubt
         root = _by_slope(*known, search.vague)
         if root is not None:
             return root
-        distance = abs(float(values.probability[0]) - target)
-        settled = len(points) > 1 and distance <= search.close * float(values.error[0])
-        if settled or right - left <= search.rounding * x:
+        distance = np.abs(values.probability - target) - search.close * values.error
+        if (len(points) > 1 and distance.min() <= 0) or right - left <= search.rounding * x:
             break
-        left, right = (left, x) if points[-1].gap > 0 else (x, right)
-        x *= np.exp(_step(points, slope))
+        new = points[-len(places) :]
+        for point in new:
+            if point.gap > 0:
+                right = min(right, np.exp(point.place))
+            else:
+                left = max(left, np.exp(point.place))
+        last = min(new, key=lambda point: abs(point.gap))
+        x = np.exp(last.place + _step(points, last, slope))
         if not left < x < right and left > 0 and right < np.inf:
             x = np.sqrt(left * right)
     return (yield from _by_doubling(target, sense, base, slope))
@@ -200,13 +215,22 @@ def equivalent(reference: Callable[[float], float], W: float, sense: int) -> flo
     return brentq(beyond, -end, end, xtol=1e-14, rtol=1e-14)
 
 
+def around(x: float, beside: float) -> np.ndarray:
+    """Return x and a place on either side of it, at some distance in log x."""
+    return x * np.exp(beside * np.array([-1.0, 0.0, 1.0]))
+
+
 class _Point(NamedTuple):
-    """One value of W: log x, and how far log x* and its limits are from where W = P."""
+    """One value of W: log x, and how far log x* and its limits are from where W = P.
+
+    `wanted` is the largest error of log x* that is good enough.
+    """
 
     place: float
     gap: float
     low: float
     high: float
+    wanted: float
 
     @property
     def error(self) -> float:
@@ -214,10 +238,15 @@ class _Point(NamedTuple):
         return max(self.high - self.gap, self.gap - self.low)
 
 
-def _point(place, values, reference, sense, wanted):
-    parts = (values.probability[0], values.lower[0], values.upper[0])
-    gap, *limits = (equivalent(reference, float(W), sense) - wanted for W in parts)
-    return _Point(place, gap, *sorted(limits))
+def _point(place, values, tol, distance):
+    """Return one value of W; `distance` takes it to that of log x* from where W = P."""
+    W, _, lower, upper = (float(part) for part in values)
+    gap, *limits = (distance(part) for part in (W, lower, upper))
+    low, high = sorted(limits)
+    good = max(high - gap, gap - low)
+    if tol > 0:
+        good = max(good, abs(distance(min(W + tol, 1.0)) - distance(max(W - tol, 0.0))) / 2)
+    return _Point(place, gap, low, high, good if np.isfinite(good) else high - gap)
 
 
 def _slope(points, base, guess):
@@ -241,14 +270,14 @@ def _slope(points, base, guess):
 def _by_slope(base, slope, doubt, most):
     """Return the root that a point and the slope tell, or None where they tell too little.
 
-    What the slope leaves open may be so many times what the error of W does.
+    What the slope leaves open may be so many times what an error of W does that is good enough.
     """
     search = tuning.SEARCH
     ways = -np.array([base.gap, base.high, base.low]) / slope
     if not np.all(np.isfinite(ways)):
         return None
     doubts = doubt + search.bend * np.abs(ways)
-    vague = abs(base.gap) * doubt > most * base.error + search.rounding
+    vague = abs(base.gap) * doubt > most * base.wanted + search.rounding
     if vague or doubts.max() > search.doubt:
         return None
     way, first, last = ways
@@ -258,9 +287,9 @@ def _by_slope(base, slope, doubt, most):
     return Root(value, max(value - lower, upper - value), lower, upper)
 
 
-def _step(points, slope):
+def _step(points, last, slope):
     """Return the next change of log x; the first tells the slope, if it need not be too wide."""
-    search, last = tuning.SEARCH, points[-1]
+    search = tuning.SEARCH
     gap, wide = last.gap, search.wide * last.error + search.rounding
     if np.isinf(wide) and last.low * last.high > 0:  # beyond the root, and far as it may be
         gap = np.copysign(np.inf, gap)

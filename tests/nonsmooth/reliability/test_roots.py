@@ -93,6 +93,29 @@ def test_few_values_suffice(warp, most, relative, sense):
         assert inside(root, target, sense, warp)
 
 
+@pytest.mark.parametrize("warp", [straight, warped])
+@pytest.mark.parametrize("wrong", [-1.0, 0.9])
+@pytest.mark.parametrize(("tol", "most"), [(0.0, 2), (0.05, 1)])
+def test_places_beside_the_guess_save_calls(tol, most, wrong, warp):
+    """They tell the slope at once, which is enough where W may be off by a part of P."""
+    rng, relative = np.random.default_rng(7), 3e-3
+    for target in (1e-6, 0.1, 0.5, 0.97):
+        part = min(target, 1 - target)
+        shown, reference = brownian(relative * part, wrong, RISING, warp), REFERENCE[RISING]
+        start = brownian(1e-13, 0.0, RISING, warp), reference, target, (1.0, 1.0), RISING
+        guess = solved_root(*start).value * np.exp(rng.uniform(-0.04, 0.04))
+        calls = []
+
+        def evaluate(wanted, calls=calls, shown=shown):
+            calls.append(wanted)
+            return {k: shown(x) for k, x in wanted.items()}
+
+        search = searched(reference, target, (guess, 1.0), RISING, tol * part, beside=0.05)
+        (root,) = solved_roots([search], evaluate)
+        assert len(calls) <= most
+        assert inside(root, target, RISING, warp)
+
+
 @pytest.mark.parametrize("sense", [RISING, FALLING])
 def test_roots_together_are_those_alone(sense):
     """With W at all x in one call, and as many calls as the one that takes most."""
