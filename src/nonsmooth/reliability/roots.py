@@ -162,10 +162,11 @@ def searched(
             if root is None:
                 raise
             return root  # with wider limits
-        for place, *one in zip(np.log(places), *values, strict=True):
-            points.append(
-                _point(place, one, tol, lambda W: equivalent(reference, W, sense) - wanted)
-            )
+        new = [
+            _point(place, one, tol, lambda W: equivalent(reference, W, sense) - wanted)
+            for place, *one in zip(np.log(places), *values, strict=True)
+        ]
+        points += new
         base = min(points, key=lambda point: abs(point.gap))
         slope, doubt = _slope(points, base, guess[1])
         known = base, slope, doubt
@@ -175,7 +176,6 @@ def searched(
         distance = np.abs(values.probability - target) - search.close * values.error
         if (len(points) > 1 and distance.min() <= 0) or right - left <= search.rounding * x:
             break
-        new = points[-len(places) :]
         for point in new:
             if point.gap > 0:
                 right = min(right, np.exp(point.place))
