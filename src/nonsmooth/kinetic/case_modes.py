@@ -90,11 +90,16 @@ def modes_at_real(grid: Ordinates, z: float) -> "ModesOfWalls":
     grid : Ordinates
         Whole.
     z : float
-        Positive, and not so small that z - A is singular by rounding.
+        Positive.
 
     Returns
     -------
     ModesOfWalls
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If rounding makes z - A singular, as where z is small and elements are fine.
     """
     matrix = grid.stiffness[EVEN] + z * np.diag(grid.masses)
     scale = 1 / np.sqrt(np.diag(matrix))

@@ -190,13 +190,13 @@ class TailEquation:
 class ReducedLine:
     """Bases of one state variable on a vertical line."""
 
-    apart: float = 16.0  # chosen: ratio of the heights at which a basis is checked
-    most: int = 8  # chosen: number of these heights
+    apart: float = 4.0  # chosen: ratio of the heights at which a basis is checked
+    most: int = 16  # chosen: number of these heights; half as many real z span a basis
     octaves: int = 10  # chosen: depths of solutions are down to 2^-10 of the distance of the walls
     even: int = 10  # chosen: and so many of it are equally far apart
     vanishing: float = 1e-12  # derived: functions so small, relative to others, are rounding
     adjoint: float = 100.0  # chosen: what is left out of adjoint solutions over that of solutions
-    shares: tuple[float, ...] = (3.0, 0.3)  # chosen: parts of the accuracy that are left out
+    shares: tuple[float, ...] = (3.0, 0.3, 0.03)  # chosen: parts of the accuracy that are left out
     checked: float = 0.3  # chosen: part of the accuracy up to which a basis may be off
     fewer: float = 0.75  # chosen: largest number of functions over that of nodes
 

@@ -182,7 +182,7 @@ def searched(
             else:
                 left = max(left, np.exp(point.place))
         last = min(new, key=lambda point: abs(point.gap))
-        x = np.exp(last.place + _step(points, last, slope))
+        x = np.exp(last.place + _step(last, slope, told=doubt < np.inf))
         if not left < x < right and left > 0 and right < np.inf:
             x = np.sqrt(left * right)
     return (yield from _by_doubling(target, sense, base, slope))
@@ -244,9 +244,9 @@ def _point(place, values, tol, distance):
     gap, *limits = (distance(part) for part in (W, lower, upper))
     low, high = sorted(limits)
     good = max(high - gap, gap - low)
-    if tol > 0:
-        good = max(good, abs(distance(min(W + tol, 1.0)) - distance(max(W - tol, 0.0))) / 2)
-    return _Point(place, gap, low, high, good if np.isfinite(good) else high - gap)
+    if 0 < W - tol < W + tol < 1:
+        good = max(good, abs(distance(W + tol) - distance(W - tol)) / 2)
+    return _Point(place, gap, low, high, good)
 
 
 def _slope(points, base, guess):
@@ -287,13 +287,13 @@ def _by_slope(base, slope, doubt, most):
     return Root(value, max(value - lower, upper - value), lower, upper)
 
 
-def _step(points, last, slope):
-    """Return the next change of log x; the first tells the slope, if it need not be too wide."""
+def _step(last, slope, told):
+    """Return the next change of log x; it is to tell the slope, if it need not be too wide."""
     search = tuning.SEARCH
     gap, wide = last.gap, search.wide * last.error + search.rounding
     if np.isinf(wide) and last.low * last.high > 0:  # beyond the root, and far as it may be
         gap = np.copysign(np.inf, gap)
-    elif len(points) == 1 and wide < slope * search.doubt / (2 * search.bend):
+    elif not told and wide < slope * search.doubt / (2 * search.bend):
         gap = np.copysign(max(abs(gap), wide), gap)
     reach = np.log(search.farthest)
     return np.clip(-gap / slope, -reach, reach)

@@ -45,42 +45,43 @@ def slope(scene: Scene, parameter: str, tol: float) -> tuple[float, float, float
     """
     if uniform_refinement.applies(scene):
 
-        def relative(error, value):
+        def solve(grid):
+            found = with_gamma2(scene, parameter, grid, tol)
+            return found, tuning.GRIDS.rounding * abs(found[1])
+
+        def share(error, value):
             # the derivative may agree on several grids by chance, but hardly gamma^2, too
-            return error[0] + max(1.0, abs(value[0])) * error[1]
+            return np.max(error) / (tol * value[1]) if value[1] > 0 else np.inf
 
-        found = uniform_refinement.refined(
-            fitted(scene, depth_for(tol), 1),
-            lambda grid: (with_logarithm(scene, parameter, grid, tol), tuning.GRIDS.rounding),
-            lambda error, value: relative(error, value) / tol,
-        )
+        found = uniform_refinement.refined(fitted(scene, depth_for(tol), 1), solve, share)
         if found.met:
-            gamma2 = float(np.exp(found.value[1]))
-            error = float(relative(found.error, found.value))
-            return float(found.value[0]) * gamma2, error * gamma2, gamma2
+            return float(found.value[0]), float(np.max(found.error)), float(found.value[1])
     gamma2 = _roughly(scene)
-
-    def on(scene, grid, accuracy):
-        elasticity, logarithm = with_logarithm(scene, parameter, grid, accuracy)
-        return float(elasticity * np.exp(logarithm))
-
-    rest = combined(scene, tol, on, lambda value, tol: tol * gamma2)
+    rest = combined(
+        scene,
+        tol,
+        lambda scene, grid, accuracy: float(with_gamma2(scene, parameter, grid, accuracy)[0]),
+        lambda value, tol: tol * gamma2,
+    )
     return rest.value, rest.error, gamma2
 
 
 def _roughly(scene):
-    """Return gamma^2, to have a measure of its derivative; the value may be too low."""
+    """Return gamma^2, to have a measure of its derivative."""
     try:
         found = asymptotic_variance(scene, tuning.GRIDS.roughly, "deterministic")
     except ToleranceError as refused:  # a derivative, if it is found, is exact all the same
-        if not isinstance(refused.result, Estimate):
-            raise
         found = refused.result
-    return max(found.value - found.error, 0.0)
+    if not isinstance(found, Estimate) or not found.value > 0:
+        raise ToleranceError(
+            "gamma^2 is not found to a tenth, to which a tolerance of its derivative is relative; "
+            "use a smaller n or a damping closer to 1"
+        )
+    return found.value
 
 
-def with_logarithm(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> np.ndarray:
-    """Compute the elasticity of gamma^2 on one grid, and log gamma^2.
+def with_gamma2(scene: Scene, parameter: str, grid: Grid, accuracy: float) -> np.ndarray:
+    """Compute the derivative of gamma^2 on one grid, by the logarithm of a parameter, and gamma^2.
 
     Parameters
     ----------
@@ -108,7 +109,5 @@ def with_logarithm(scene: Scene, parameter: str, grid: Grid, accuracy: float) ->
     h, half = solve.solve(g * u, EVEN, accuracy)
     own = solve.fold(own)
     v, mean = solve.solve(changed(u, ODD) + own, ODD, accuracy)
-    _, slope = solve.solve(changed(h, EVEN) + g * v + (own - mean) * u, EVEN, accuracy)
-    if half == 0:
-        return np.full(2, np.inf)
-    return np.array([value_of(scene, parameter) * slope / half, np.log(2 * abs(half))])
+    _, rate = solve.solve(changed(h, EVEN) + g * v + (own - mean) * u, EVEN, accuracy)
+    return 2 * np.array([value_of(scene, parameter) * rate, half])

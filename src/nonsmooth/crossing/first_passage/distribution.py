@@ -352,7 +352,7 @@ def _solver(problem: FirstPassageProblem, times: np.ndarray, tol: float) -> Solv
 class _Refinement:
     """Solutions on finer and finer levels, computed anew only at times that need it.
 
-    A solution is a pair: the values, shape (2, k), and at which times they are new.
+    A solution is what a `Solver` returns.
     """
 
     def __init__(self, problem: FirstPassageProblem, times: np.ndarray, tol: float, solver: Solver):
@@ -361,23 +361,21 @@ class _Refinement:
         self._found = np.array([np.zeros(len(times)), np.ones(len(times))])
         self._wanted = np.full(len(times), True)
         self._change: float | np.ndarray = 0.0
-        self._inexact = np.zeros(len(times))
         self._worst = np.inf
 
     def solution(self, level):
         """Solve on a level."""
-        self._found, solved, inexact = self._solve(level, self._found, self._wanted)
-        self._inexact = np.where(solved, inexact, self._inexact)
-        return self._found, solved
+        self._found, *more = self._solve(level, self._found, self._wanted)
+        return self._found, *more
 
     def error(self, solutions):
         """Estimate the errors of the last solution from the difference to the one before."""
         refinement = tuning.REFINEMENT
-        (coarse, _), (found, solved) = solutions[-2:]
+        (coarse, *_), (found, solved, inexact) = solutions[-2:]
         solution = np.clip(found, 0.0, 1.0)
         # values are compared before they are clipped: two levels that failed may agree afterwards
         change = refinement.safety * np.abs(found - coarse) + np.abs(found - solution)
-        change += refinement.by_chance * self.tol * solution + self._inexact
+        change += refinement.by_chance * self.tol * solution + inexact
         self._change = np.where(solved, change, self._change)
         return _with_floors(self.problem, self.times, solution, self._change)
 

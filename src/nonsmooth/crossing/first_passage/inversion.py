@@ -143,8 +143,9 @@ class _Inversion:
             self.level.resolution, self.times[here], -self.saddles.bound[here][0]
         )
 
-    def _store(self, here, values, row=0):
+    def _store(self, here, values, row=0, inexact=0.0):
         """Keep the values of the probability, row 0, or of the survival probability, row 1."""
+        self.inexact[here] = inexact
         self.found[row, here], self.found[1 - row, here] = values, 1 - values
         self.solved[here] = True
 
@@ -267,16 +268,14 @@ class _OnVerticalLines(_Inversion):
         first, last, rarity = self.needs[abscissa if rising else None]
         of_grid = self.level.resolution, np.array([first, last]), rarity
         parts, fronts = self.problem.parts(*of_grid)
-        values = np.zeros(here.stop - here.start)
+        values, inexact = np.zeros(here.stop - here.start), np.zeros(here.stop - here.start)
         if self.times[here.stop - 1] > fronts.min():
             begun = saddles.begin(abscissa, settings.negligible * min(accuracy, 1.0))
             line = vertical_lines.line(parts, abscissa)
             # in the rise F is smaller than what bases leave out
             if not rising and accuracy > settings.best:
-                parts, off = self.problem.parts_on_line(*of_grid, abscissa, accuracy)
-                self.inexact[here] = (
-                    settings.inverse * off * line.size * np.exp(abscissa * self.times[here])
-                )
+                parts, off = self.problem.parts_on_line(parts, of_grid, abscissa, accuracy)
+                inexact = settings.inverse * off * line.size * np.exp(abscissa * self.times[here])
             values = vertical_lines.inverted(
                 parts,
                 line,
@@ -285,7 +284,7 @@ class _OnVerticalLines(_Inversion):
                 rising,
                 offset=turn / 2,
             ).at(self.times[here])
-        self._store(here, values)
+        self._store(here, values, inexact=inexact)
 
 
 def _begin(problem, saddles):

@@ -42,11 +42,11 @@ class Intervals:
         self.parts, self.on_line = cache(self._parts), cache(self._on_line)
 
     def _on_line(self, of_grid, abscissa, accuracy):
-        """Return what `reduced_line.on_line` does, or the grid if that is small or folded."""
+        """Return what `reduced_line.on_line` does; None if the grid is small or folded."""
         grid = self.grid(*of_grid)
         two_sided = all(problem.two_sided for problem in self.problems)
         if grid.mirrored or not two_sided or len(grid.moving) < tuning.LINE_GRIDS.many:
-            return grid, 0.0
+            return None
         intervals = [(problem.lower, problem.upper) for problem in self.problems]
 
         def exact(z):
@@ -57,8 +57,7 @@ class Intervals:
 
     def _parts(self, of_grid, z, line=None):
         """Parts of the transform at a place for each interval, if need be on a line alone."""
-        grid = self.grid(*of_grid) if line is None else self.on_line(of_grid, *line)[0]
-        found = modes(grid, z)
+        found = modes(self.grid(*of_grid) if line is None else self.on_line(of_grid, *line)[0], z)
         return {
             (problem.lower, problem.upper): found.by_exit(problem.lower, problem.upper)
             if problem.is_split
@@ -169,16 +168,23 @@ class LineProblem(_OfLine):
 
     def parts_on_line(
         self,
-        resolution: int,
-        times: np.ndarray,
-        rarity: float,
+        parts: Callable[[complex], np.ndarray],
+        of_grid: tuple[int, np.ndarray, float],
         abscissa: float,
         accuracy: float,
     ) -> tuple[Callable[[complex], np.ndarray], float]:
-        """Parts of F on a vertical line alone; see `LaplaceProblem`."""
-        of_grid, line = self.fitting(resolution, times, rarity), (abscissa, accuracy)
-        _, inexact = self.intervals.on_line(of_grid, *line)
-        return lambda z: self.intervals.parts(of_grid, z, line)[self.lower, self.upper], inexact
+        """Parts of F in a basis, if there is one; see `LaplaceProblem`."""
+        key, line = self.fitting(*of_grid), (abscissa, accuracy)
+        if (found := self.intervals.on_line(key, *line)) is None:
+            return parts, 0.0
+        _, highest, inexact = found
+
+        def nearly(z):
+            if z.imag > highest:
+                return parts(z)
+            return self.intervals.parts(key, z, line)[self.lower, self.upper]
+
+        return nearly, inexact
 
     def _on_grid(self, *of_grid):
         grid = self.intervals.grid(*of_grid)

@@ -186,14 +186,20 @@ class LaplaceProblem(FirstPassageProblem):
         return lambda z: np.array([transform(z)]), np.zeros(1)
 
     def parts_on_line(
-        self, resolution: Any, times: np.ndarray, rarity: float, abscissa: float, accuracy: float
+        self,
+        parts: Callable[[complex], np.ndarray],
+        of_grid: tuple[Any, np.ndarray, float],
+        abscissa: float,
+        accuracy: float,
     ) -> tuple[Callable[[complex], np.ndarray], float]:
         """Parts of F at many places of a vertical line, as cheaply as an accuracy allows.
 
         Parameters
         ----------
-        resolution, times, rarity
-            As for `transform`.
+        parts : callable
+            What `parts` returns.
+        of_grid : tuple
+            The arguments with which it does.
         abscissa : float
             Re z; positive.
         accuracy : float
@@ -202,11 +208,11 @@ class LaplaceProblem(FirstPassageProblem):
         Returns
         -------
         parts : callable
-            As of `parts`.
+            The same, or others that are nearly the same on the line.
         inexact : float
             What they are off, relative to that value.
         """
-        return self.parts(resolution, times, rarity)[0], 0.0
+        return parts, 0.0
 
     @abstractmethod
     def coarse_transform(self, radius: float, depth: float) -> Callable[[complex], complex]:

@@ -16,6 +16,7 @@ as many modes with Re mu > 0 as functions with G = 1, for every z with Re z > 0.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,7 +69,7 @@ def on_line(
     exact: Callable[[complex], np.ndarray],
     abscissa: float,
     accuracy: float,
-) -> tuple[Ordinates | ReducedLine, float]:
+) -> tuple[ReducedLine, float, float] | None:
     """Choose a basis that is good enough on a vertical line, and fewer functions than nodes.
 
     It is compared with the grid at some heights, of which none was used to find it.
@@ -88,10 +89,13 @@ def on_line(
 
     Returns
     -------
-    found : Ordinates or ReducedLine
-        The grid itself, if there is no such basis.
+    found : ReducedLine
+    highest : float
+        Height up to which it is good enough; from four times that on transforms are negligible.
     inexact : float
         Largest difference to transforms on the grid, relative to the value on the real axis.
+
+    None is returned if there is no such basis.
     """
     settings = tuning.REDUCED_LINE
     size = np.abs(exact(complex(abscissa)).sum(axis=1, keepdims=True))
@@ -102,26 +106,44 @@ def on_line(
     ):
         places.append(complex(abscissa, abscissa * settings.apart ** len(places)))
         probes.append(exact(places[-1]))
-    real = np.geomspace(abscissa, places[-1].imag, 2 + len(places))
-    solved = [modes_at_real(grid, z) for z in real]
-    functions = [np.hstack(both) for both in zip(*_functions(solved, intervals), strict=True)]
-    for share in settings.shares:
-        basis = _basis(grid, functions, share * accuracy)
-        if sum(part.shape[1] for part in basis) > settings.fewer * len(grid.moving):
-            break
-        reduced = _reduced(grid, basis)
-        found = [np.array([modes(reduced, z).by_exit(*i) for i in intervals]) for z in places]
-        inexact = float(np.max(np.abs(np.subtract(found, probes)) / size))
-        if inexact <= settings.checked * accuracy:
-            return reduced, inexact
-    return grid, 0.0
+    # where transforms are negligible, modes that are wrong reach farther than those that are right
+    places, probes = places[:-1], probes[:-1]
+    if not places:
+        return None
+    with suppress(np.linalg.LinAlgError):  # rounding may hide which modes decay
+        solved = np.geomspace(abscissa, places[-1].imag, 2 + len(places) // 2)
+        functions = _functions(grid, solved, intervals)
+        for share in settings.shares:
+            basis = _basis(grid, functions, share * accuracy)
+            if sum(part.shape[1] for part in basis) > settings.fewer * len(grid.moving):
+                break
+            reduced = _reduced(grid, basis)
+            found = [np.array([modes(reduced, z).by_exit(*i) for i in intervals]) for z in places]
+            inexact = float(np.max(np.abs(np.subtract(found, probes)).sum(axis=-1) / size[:, 0]))
+            if inexact <= settings.checked * accuracy:
+                return reduced, places[-1].imag, inexact
+    return None
 
 
-def _functions(solved, intervals):
-    """Yield solutions and adjoint solutions at many depths, in columns of norm 1."""
-    for found in solved:
+def _functions(grid, places, intervals):
+    """Return solutions and adjoint solutions at many depths, in columns of norm 1."""
+    solutions, adjoint = [], []
+    for z in places:
+        found, row = modes_at_real(grid, z), _at_start(grid, z)
         for lower, upper in intervals:
-            yield _solutions(found, upper - lower), _adjoint(found, lower, upper)
+            solutions.append(_solutions(found, upper - lower))
+            adjoint.append(_adjoint(found, row, lower, upper))
+    return np.hstack(solutions), np.hstack(adjoint)
+
+
+def _at_start(grid, z):
+    """Return a row that interpolates at the start from the nodes that move alone.
+
+    Where g = 0, functions follow from those at the other nodes, by (z - A) h = 0 there.
+    """
+    row, moving, still = grid.start[EVEN], grid.moving, np.flatnonzero(grid.g == 0)
+    matrix = grid.stiffness[EVEN][still] + z * np.diag(grid.masses)[still]
+    return row[moving] - row[still] @ np.linalg.solve(matrix[:, still], matrix[:, moving])
 
 
 def _solutions(found, length):
@@ -129,7 +151,7 @@ def _solutions(found, length):
     return _between(found, length, *np.split(found.strengths(length), [len(found.above.rates)]))
 
 
-def _adjoint(found, lower, upper):
+def _adjoint(found, row, lower, upper):
     """Return solutions with a source at the start, at many depths above it and below it.
 
     Where the flow of the equation leaves, that of the adjoint one enters, and brings nothing.
@@ -146,7 +168,7 @@ def _adjoint(found, lower, upper):
             np.hstack([none, np.hstack([above, far])])[leaves],
         ]
     )
-    jump = grid.start[EVEN][grid.moving] / (grid.ones * g)
+    jump = row / (grid.ones * g)
     strengths = np.linalg.solve(matrix, np.append(jump, 0 * jump))[:, None]
     both = [np.split(part, [above.shape[1]]) for part in np.split(strengths, 2)]
     return np.hstack([_between(found, upper, *both[0]), _between(found, -lower, *both[1])])

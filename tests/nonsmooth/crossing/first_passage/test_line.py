@@ -6,6 +6,7 @@ from scipy.integrate import simpson
 from scipy.interpolate import CubicSpline
 
 import nonsmooth as ns
+from nonsmooth.crossing.first_passage.line import Intervals, LineProblem
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.kinetic.case_modes import modes
 from nonsmooth.kinetic.ordinates_line import ordinates
@@ -194,6 +195,36 @@ class TestDeterministic:
         bias = np.abs(sample.step_bias) + 3 * sample.step_bias_error
         gap = np.abs(sample.probability - found.probability)
         assert np.all(gap < 4.5 * sample.standard_error + bias)
+
+
+def test_what_a_basis_is_off_counts(monkeypatch):
+    """It is an error of W at late times, by about as much."""
+    off = 1e-5
+
+    def stated(inexact):
+        def in_basis(self, parts, of_grid, abscissa, accuracy):
+            return parts, inexact
+
+        monkeypatch.setattr(LineProblem, "parts_on_line", in_basis)
+        return exact((-0.6, 0.8), [0.2, 5.0], 10.0, SKEWED, 1e-3)
+
+    usual, told = stated(0.0), stated(off)
+    np.testing.assert_array_equal(told.probability, usual.probability)
+    more = (told.probability_error - usual.probability_error).values
+    assert off < more[-1] < 20 * off
+
+
+@pytest.mark.parametrize(
+    ("scene", "levels", "degree"),
+    [(FRICTION, (-0.6, 0.8), 11), (SKEWED, (-np.inf, 0.8), 11), (SKEWED, (-0.6, 0.8), 2)],
+    ids=["half a grid", "one wall", "few nodes"],
+)
+def test_some_grids_are_in_no_basis(scene, levels, degree):
+    """Then the parts of F are those of the grid."""
+    (problem,) = Intervals(scene, [levels]).problems
+    of_grid = degree, np.array([1.0, 50.0]), 0.0
+    parts, _ = problem.parts(*of_grid)
+    assert problem.parts_on_line(parts, of_grid, 0.02, 1e-8) == (parts, 0.0)
 
 
 def test_early_crossings_are_those_of_integrated_brownian_motion():
