@@ -197,6 +197,7 @@ class ReducedLine:
     vanishing: float = 1e-12  # derived: functions so small, relative to others, are rounding
     adjoint: float = 100.0  # chosen: what is left out of adjoint solutions over that of solutions
     shares: tuple[float, ...] = (3.0, 0.3, 0.03)  # chosen: parts of the accuracy that are left out
+    spared: int = 1  # chosen: number of checked heights above which it need not be good enough
     checked: float = 0.3  # chosen: part of the accuracy up to which a basis may be off
     fewer: float = 0.75  # chosen: largest number of functions over that of nodes
 

@@ -91,7 +91,8 @@ def on_line(
     -------
     found : ReducedLine
     highest : float
-        Height up to which it is good enough; from four times that on transforms are negligible.
+        Height up to which it is good enough. Few places are above it where transforms are not
+        negligible.
     inexact : float
         Largest difference to transforms on the grid, relative to the value on the real axis.
 
@@ -119,9 +120,11 @@ def on_line(
                 break
             reduced = _reduced(grid, basis)
             found = [np.array([modes(reduced, z).by_exit(*i) for i in intervals]) for z in places]
-            inexact = float(np.max(np.abs(np.subtract(found, probes)).sum(axis=-1) / size[:, 0]))
-            if inexact <= settings.checked * accuracy:
-                return reduced, places[-1].imag, inexact
+            off = np.max(np.abs(np.subtract(found, probes)).sum(axis=-1) / size[:, 0], axis=-1)
+            wrong = np.flatnonzero(~(off <= settings.checked * accuracy))
+            good = wrong[0] if len(wrong) else len(places)
+            if 0 < good >= len(places) - settings.spared:
+                return reduced, places[good - 1].imag, float(np.max(off[:good]))
     return None
 
 
