@@ -55,20 +55,20 @@ def crossing_bias(
     bias, error = bias_of_counts(times, passage, order)
     if p <= measured:
         return bias, error
-    relative, relative_error = _bias_of_gamma2(scene, times, change)
+    relative, relative_error = _bias_of_gamma2(times, change, order)
     crossed = np.mean(passage[0][:, None] <= times, axis=0)
     rest = np.abs(bias - relative * _slope(horizons, crossed)) + error
     slope = _slope(horizons, probability)
     return relative * slope, np.hypot(relative_error * slope, np.max(rest) * np.sqrt(measured / p))
 
 
-def _bias_of_gamma2(scene, times, change):
+def _bias_of_gamma2(times, change, order):
     """Relative bias of the slope of Var D over the second half, and its standard error.
 
     The error is computed as if the variances at both times were independent, which makes it larger
     than the slope's own.
     """
-    bias, error = step_bias(change, registry.scheme(scene, "strang").weak_order(scene))
+    bias, error = step_bias(change, order)
     half = int(np.argmin(np.abs(times - times[-1] / 2)))
     v = variance_of_fine(change)
     growth = v[-1] - v[half]

@@ -154,7 +154,7 @@ def searched(
     points: list[_Point] = []
     known: tuple[_Point, float, float] | None = None
     for number in range(search.most):
-        places = np.array([x]) if number or not beside else around(x, beside)
+        places = around(x, 0.0 if number else beside)
         try:
             values = yield places
         except ToleranceError:
@@ -216,8 +216,8 @@ def equivalent(reference: Callable[[float], float], W: float, sense: int) -> flo
 
 
 def around(x: float, beside: float) -> np.ndarray:
-    """Return x and a place on either side of it, at some distance in log x."""
-    return x * np.exp(beside * np.array([-1.0, 0.0, 1.0]))
+    """Return x, and a place on either side of it, unless their distance in log x is 0."""
+    return np.unique(x * np.exp(beside * np.array([-1.0, 0.0, 1.0])))
 
 
 class _Point(NamedTuple):

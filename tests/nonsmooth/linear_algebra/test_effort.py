@@ -37,9 +37,9 @@ def test_a_given_tolerance_is_not_limited(monkeypatch):
 
 
 CALLS = {
-    "crossing": lambda **options: ns.crossing_probability(SCENE, **ASKED, **options),
-    "threshold": lambda **options: ns.crossing_threshold(SCENE, 0.1, 2.0, **options),
-    "time": lambda **options: ns.failure_time(SCENE, 1.0, 0.1, **options),
+    "crossing": lambda **tol: ns.crossing_probability(SCENE, **ASKED, **tol),
+    "threshold": lambda **tol: ns.crossing_threshold(SCENE, 0.1, 2.0, **tol),
+    "time": lambda **tol: ns.failure_time(SCENE, 1.0, 0.1, **tol),
 }
 
 
@@ -47,7 +47,8 @@ CALLS = {
 @pytest.mark.parametrize("call", CALLS)
 def test_paths_answer_what_takes_too_long(call, monkeypatch):
     """Where the solver has nothing; 95 % limits by a fixed seed hold the truth."""
-    solved = CALLS[call](tol=1e-3, method="deterministic")
+    solved = CALLS[call](tol=1e-4)
+    assert solved.attrs["method"] == "deterministic"
     monkeypatch.setattr(effort, "MOST", 1e10)
     counted = CALLS[call]()
     assert counted.attrs["method"] == "monte_carlo"

@@ -268,11 +268,11 @@ class _OnVerticalLines(_Inversion):
         first, last, rarity = self.needs[abscissa if rising else None]
         of_grid = self.level.resolution, np.array([first, last]), rarity
         parts, fronts = self.problem.parts(*of_grid)
-        values, inexact = np.zeros(here.stop - here.start), np.zeros(here.stop - here.start)
+        values, inexact = np.zeros(here.stop - here.start), 0.0
         if self.times[here.stop - 1] > fronts.min():
             begun = saddles.begin(abscissa, settings.negligible * min(accuracy, 1.0))
             line = vertical_lines.line(parts, abscissa)
-            # in the rise F is smaller than what bases leave out
+            # in the rise F is less than what bases leave out, and the best fits have no room for it
             if not rising and accuracy > settings.best:
                 parts, off = self.problem.parts_on_line(parts, of_grid, abscissa, accuracy)
                 inexact = settings.inverse * off * line.size * np.exp(abscissa * self.times[here])

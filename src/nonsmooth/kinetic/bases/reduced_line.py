@@ -23,6 +23,7 @@ import numpy as np
 
 from nonsmooth.grids.solver import EVEN
 from nonsmooth.kinetic import tuning
+from nonsmooth.kinetic.bases.reduced_ordinates import Fields, joined, with_constants
 from nonsmooth.kinetic.case_modes import ModesOfWalls, modes, modes_at_real
 from nonsmooth.kinetic.ordinates_line import Ordinates
 
@@ -37,8 +38,8 @@ class ReducedLine:
     ----------
     stiffness, weights : numpy.ndarray, shape (k, k)
         -S and M.
-    g, masses : numpy.ndarray, shape (k,)
-        1 or -1 for functions of the basis, 0 for nodes; 1 for all.
+    g : numpy.ndarray, shape (k,)
+        1 or -1 for functions of the basis, 0 for nodes.
     ones : numpy.ndarray, shape (r,)
         The function 1 in the basis.
     start : dict
@@ -48,7 +49,6 @@ class ReducedLine:
     stiffness: np.ndarray
     weights: np.ndarray
     g: np.ndarray
-    masses: np.ndarray
     ones: np.ndarray
     start: dict
     mirrored: bool = False
@@ -57,6 +57,11 @@ class ReducedLine:
     def moving(self) -> np.ndarray:
         """Indices of the functions of the basis."""
         return np.flatnonzero(self.g)
+
+    @property
+    def masses(self) -> np.ndarray:
+        """Of functions that are orthonormal in L^2(m |g|): 1, shape (k,)."""
+        return np.ones(len(self.g))
 
     def resolvent(self, z: complex, parity: int, values: np.ndarray) -> np.ndarray:
         """Solve (z M - S) u = f, shape (k, c); the parity is that of functions on a whole grid."""
@@ -123,20 +128,20 @@ def on_line(
             off = np.max(np.abs(np.subtract(found, probes)).sum(axis=-1) / size[:, 0], axis=-1)
             wrong = np.flatnonzero(~(off <= settings.checked * accuracy))
             good = wrong[0] if len(wrong) else len(places)
-            if 0 < good >= len(places) - settings.spared:
+            if good >= max(1, len(places) - settings.spared):
                 return reduced, places[good - 1].imag, float(np.max(off[:good]))
     return None
 
 
 def _functions(grid, places, intervals):
     """Return solutions and adjoint solutions at many depths, in columns of norm 1."""
-    solutions, adjoint = [], []
+    fields = []
     for z in places:
         found, row = modes_at_real(grid, z), _at_start(grid, z)
         for lower, upper in intervals:
-            solutions.append(_solutions(found, upper - lower))
-            adjoint.append(_adjoint(found, row, lower, upper))
-    return np.hstack(solutions), np.hstack(adjoint)
+            own = _solutions(found, upper - lower), _adjoint(found, row, lower, upper)
+            fields.append(Fields(*own))
+    return joined(fields)
 
 
 def _at_start(grid, z):
@@ -219,13 +224,9 @@ def _basis(grid, functions, accuracy):
     in_units = np.hstack([part / size for part, size in zip(functions, left_out, strict=True)])
     parts = []
     for here in (g > 0, g < 0):
-        ones = (grid.ones * np.sqrt(np.abs(g)))[here]
-        ones /= np.linalg.norm(ones)
-        # constants are kept as they are, so that nothing is lost but at the rate z
-        rest = in_units[here] - np.outer(ones, ones @ in_units[here])
-        left, sizes, _ = np.linalg.svd(rest, full_matrices=False)
-        part = np.zeros((len(g), 1 + np.sum(sizes > 1)))
-        part[here] = np.column_stack([ones, left[:, sizes > 1]])
+        own = with_constants((grid.ones * np.sqrt(np.abs(g)))[here], in_units[here])
+        part = np.zeros((len(g), own.shape[1]))
+        part[here] = own
         parts.append(part)
     return parts
 
@@ -244,7 +245,6 @@ def _reduced(grid, basis):
         columns.T @ grid.stiffness[EVEN] @ columns,
         columns.T @ (grid.masses[:, None] * columns),
         signs,
-        np.ones(len(signs)),
         (grid.ones * flow) @ both,
         {EVEN: grid.start[EVEN] @ columns},
     )

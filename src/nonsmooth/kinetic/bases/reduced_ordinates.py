@@ -210,16 +210,32 @@ def reduced(
     """
     flow = np.sqrt(grid.masses * np.abs(grid.speeds))
     ones = flow * grid.ones[: len(flow)]
-    ones /= np.linalg.norm(ones)
     in_units = []
     for part, left_out in ((fields.solutions, accuracy), (fields.adjoint, adjoint)):
         weighted = flow[:, None] * part
         in_units.append(weighted / (left_out * np.linalg.norm(weighted, axis=0).max()))
-    fields_in_units = np.hstack(in_units)
-    # constants are kept as they are, so that nothing is lost but at the rate z
-    rest = fields_in_units - np.outer(ones, ones @ fields_in_units)
+    return ReducedOrdinates(grid, with_constants(ones, np.hstack(in_units)) / flow[:, None])
+
+
+def with_constants(ones: np.ndarray, functions: np.ndarray) -> np.ndarray:
+    """Return orthonormal functions that span others, but for what is less than 1 of them.
+
+    Constants are kept as they are, so that nothing is lost but at the rate z.
+
+    Parameters
+    ----------
+    ones : numpy.ndarray, shape (k,)
+        The function 1, or a multiple of it.
+    functions : numpy.ndarray, shape (k, m)
+
+    Returns
+    -------
+    numpy.ndarray, shape (k, r)
+    """
+    ones = ones / np.linalg.norm(ones)
+    rest = functions - np.outer(ones, ones @ functions)
     left, sizes, _ = np.linalg.svd(rest, full_matrices=False)
-    return ReducedOrdinates(grid, np.column_stack([ones, left[:, sizes > 1]]) / flow[:, None])
+    return np.column_stack([ones, left[:, sizes > 1]])
 
 
 def unreduced(grid: PlaneOrdinates) -> ReducedOrdinates:

@@ -47,6 +47,7 @@ def test_transforms_are_those_of_the_grid(scene, levels, abscissa, accuracy):
         np.max(np.abs(modes(reduced, z).by_exit(*levels) - whole(z)[0]))
         for z in abscissa + 1j * heights(abscissa, highest)
     ]
+    # one height need not be good enough, and the next is that where transforms are negligible
     assert np.all(np.abs(whole(complex(abscissa, 16 * highest))) <= accuracy * size)
     assert 0 < inexact < accuracy
     assert max(off) <= 3 * inexact * size  # as much as its inverse is taken to have
@@ -75,7 +76,11 @@ def test_none_where_no_basis_is_good_enough(degree, time, abscissa, accuracy):
 
 
 def test_constants_are_in_the_basis():
-    """At z = 0 all paths leave: what is lost is only the rate z."""
+    """At z = 0 all paths leave: what is lost is only the rate z.
+
+    Without constants it would be some of the accuracy, 1e-7; here it has the size of z times the
+    mean duration, so far from the line not its digits.
+    """
     grid = ordinates(QUADRATIC, 7, 0.1)
     reduced, *_ = on_line(grid, [(-1.0, 1.0)], exact(grid, (-1.0, 1.0)), 0.1, 1e-6)
     z = 1e-9
