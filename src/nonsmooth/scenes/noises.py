@@ -9,6 +9,7 @@ from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 import sympy
+from scipy.optimize import minimize_scalar
 
 from nonsmooth.checks import as_number, require_parameter
 from nonsmooth.errors import SceneError, quoted
@@ -192,8 +193,8 @@ class Hamiltonian:
         with np.errstate(all="ignore"):
             energy = vectorised(self.energy, (eta, zeta))(*ends)
             dissipation = vectorised(self.dissipation, (eta, zeta))(*ends)
-            growth = np.diff(energy, axis=0)
-        if not np.all(growth > 0):
+            grows = np.all(np.diff(energy, axis=0) > 0) and self._grows_between(angle, energy)
+        if not grows:
             raise SceneError(
                 f"the Hamiltonian H = {quoted(self.H)} does not confine (eta, zeta); "
                 "it must grow in every direction, for example H = 'eta**2/2 + zeta**2/2'"
@@ -203,6 +204,26 @@ class Hamiltonian:
                 f"the dissipation F = {quoted(self.F)} is not positive at infinity; "
                 "use a positive function, for example F = '1'"
             )
+
+    def _grows_between(self, angle, energy):
+        """Whether the least H at each distance grows, at angles between those of known values."""
+        H, settings = vectorised(self.energy, (eta, zeta)), tuning.FAR_OUT
+        beside = np.array([0.0, -settings.direction, settings.direction])
+        least = []
+        for r, near in zip(settings.distances, angle[energy.argmin(axis=1)], strict=True):
+
+            def at(a, r=r):
+                return H(r * np.cos(a), r * np.sin(a))
+
+            bounds = near + angle[1] * np.array([-1, 1])
+            found = minimize_scalar(
+                at, bounds=bounds, method="bounded", options={"xatol": settings.direction}
+            ).x
+            least.append(at(min(near, found, key=at) + beside))
+        least = np.array(least)
+        # on a ray on which H is constant it changes by what rounding does to the direction
+        change = np.max(least[-1]) - least[-1, 0]
+        return np.all(np.diff(least[:, 0]) > 0) and least[-1, 0] - least[0, 0] > change
 
     @property
     def energy(self) -> sympy.Expr:
