@@ -13,6 +13,7 @@ from nonsmooth.errors import ToleranceError
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids.generator import at_points, evaluate
 from nonsmooth.grids.mesh.axes import variables
+from nonsmooth.grids.mesh.box import is_known
 from nonsmooth.grids.solver import ODD
 from nonsmooth.grids.tensor_grid import Grid, around_start, depth_for, fitted, solver
 from nonsmooth.scenes.scene import Scene
@@ -31,6 +32,8 @@ def on_coarse_grid(scene: Scene) -> Callable[[Points], np.ndarray] | None:
         With two to four state variables and odd g.
     """
     accuracy, scene = tuning.POISSON.coarse, with_finite_n(scene)
+    if not is_known(scene):
+        return None
     try:
         grid = fitted(scene, depth_for(accuracy), GAMMA2_ON_GRIDS.coarse[scene.dimension])
         u, axes = _solved(scene, grid, accuracy)
@@ -98,6 +101,8 @@ def at_start(scene: Scene, unit: float) -> Estimate | None:
     Estimate or None
         Its error is at most `tuning.POISSON.at_start` units.
     """
+    if not is_known(scene):
+        return None
     began = time.perf_counter()
     most = tuning.POISSON.at_start
     start = {s: np.array([scene.start.get(s.name, 0.0)]) for s in variables(scene)}

@@ -16,6 +16,7 @@ from nonsmooth.errors import SceneError, ToleranceError, quoted
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.combination_technique import combined
 from nonsmooth.grids.generator import evaluate, start_row
+from nonsmooth.grids.mesh.box import is_known
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.grids.tensor_grid import around_start, direct_solver, fitted
 from nonsmooth.grids.tuning import COMBINATION_TECHNIQUE
@@ -24,8 +25,9 @@ from nonsmooth.statistics import gamma2_on_grids
 
 
 def applies(scene: Scene) -> bool:
-    """Whether the scene has two state variables, a finite n, and odd g and drift."""
-    return scene.dimension == 2 and not math.isinf(scene.n) and scene.is_odd()
+    """Whether the scene has two state variables, a finite n, odd g and drift, and a known box."""
+    finite = scene.dimension == 2 and not math.isinf(scene.n)
+    return finite and scene.is_odd() and is_known(scene)
 
 
 def layer_constants(

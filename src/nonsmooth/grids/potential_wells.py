@@ -7,7 +7,7 @@ import numpy as np
 import scipy
 
 from nonsmooth.grids import tuning
-from nonsmooth.grids.mesh.box import half_widths
+from nonsmooth.grids.mesh.box import half_widths, is_known
 from nonsmooth.grids.mesh.edges import potentials
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
@@ -24,8 +24,11 @@ def starts(scene: Scene) -> list[dict[str, float]]:
     Returns
     -------
     list of dict
-        Like `Scene.start`; a single one if no barrier holds paths up.
+        Like `Scene.start`; a single one if no barrier holds paths up, or the invariant density of
+        the noise is not known.
     """
+    if not is_known(scene):
+        return [scene.start]
     chosen = tuning.POTENTIAL_WELLS
     finite = scene if math.isfinite(scene.n) else scene.with_n(chosen.stiff)
     ends = half_widths(finite, chosen.depth)

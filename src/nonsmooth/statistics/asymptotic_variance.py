@@ -11,6 +11,7 @@ from functools import partial
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
 from nonsmooth.errors import answered, first_answer
 from nonsmooth.estimate import Estimate, not_negative
+from nonsmooth.grids.mesh.box import is_known
 from nonsmooth.line import quadrature
 from nonsmooth.line.dry_friction import friction_variance
 from nonsmooth.paths.tuning import MONTE_CARLO
@@ -92,13 +93,18 @@ def asymptotic_variance(
 
 
 def _fastest_first(scene, tol):
-    if "y" not in scene.state:
+    if not _on_grids(scene):
         return ["monte_carlo"]
     accuracy = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
     if accuracy >= tuning.GAMMA2.faster_sampled[scene.dimension - 1]:
         return ["monte_carlo", "deterministic"]
     either = tol is None or tol >= MONTE_CARLO.tolerance
     return ["deterministic", "monte_carlo"] if either else ["deterministic"]
+
+
+def _on_grids(scene):
+    """Whether grids can solve the scene."""
+    return "y" in scene.state and is_known(scene)
 
 
 def _sampled(scene, tol, seed, threads):
@@ -146,7 +152,7 @@ def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = No
     Estimate
     """
     # From three variables on, sampling is faster than solving, and a percent is enough for W_star.
-    accuracy, way = {1: (None, "deterministic"), 2: (2e-3, "deterministic")}.get(
-        scene.dimension, (None, "monte_carlo")
-    )
-    return asymptotic_variance(scene, accuracy, way, seed, threads)
+    if not _on_grids(scene) or scene.dimension > 2:
+        return asymptotic_variance(scene, None, "monte_carlo", seed, threads)
+    accuracy = None if scene.is_line else 2e-3
+    return asymptotic_variance(scene, accuracy, "deterministic", seed, threads)

@@ -17,6 +17,7 @@ from nonsmooth.errors import ToleranceError, answered, first_answer
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.generator import evaluate
+from nonsmooth.grids.mesh.box import is_known
 from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, solver
 from nonsmooth.line import quadrature
 from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
@@ -72,9 +73,9 @@ def mean(
     known = method != "monte_carlo" or not scene.state  # a constant g is not sampled
     if known and (exact := exact_mean(scene)) is not None:
         return exact
-    ways = [method] if method else ["deterministic"] if "y" in scene.state else ["monte_carlo"]
-    if ways == ["deterministic"] and method is None:
-        ways.append("monte_carlo")
+    ways = [method] if method else list(METHODS)
+    if method is None and not ("y" in scene.state and is_known(scene)):
+        ways = ["monte_carlo"]
 
     def present(found):
         value, error, solver = found

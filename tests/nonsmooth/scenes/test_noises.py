@@ -147,3 +147,20 @@ def test_a_noise_of_another_kind_is_simulated():
         ns.asymptotic_variance(ns.Scene("friction", Filtered()), method="deterministic")
     with pytest.raises(SceneError, match="sigma is nan"):
         ns.Scene("friction", Filtered(float("nan")))
+
+
+@pytest.mark.slow
+def test_paths_answer_for_a_noise_of_another_kind():
+    """The filters leave the white noise's intensity, 1, to slow motions; E eta^2 is 1/4.
+
+    Errors hold 4.5 fold; false alarms 7e-6 each.
+    """
+    scene = ns.Scene("friction", Filtered(), observable="eta")
+    for found, exact in (
+        (ns.asymptotic_variance(scene), 1.0),
+        (ns.mean(scene.with_observable("eta**2")), 0.25),
+    ):
+        assert abs(found.value - exact) <= 4.5 * found.error
+    held = ns.Scene("obstacle", Filtered(), n=10, potential="x**2/2", observable="x")
+    length = ns.extrapolation_length(held)
+    assert 0 < length.error < length.value

@@ -27,7 +27,7 @@ from nonsmooth.grids.elements import Axis, continuous, discontinuous
 from nonsmooth.grids.generator import assemble, start_row
 from nonsmooth.grids.grading import distinct, geometric
 from nonsmooth.grids.mesh.axes import variables
-from nonsmooth.grids.mesh.box import half_widths
+from nonsmooth.grids.mesh.box import half_widths, is_known
 from nonsmooth.grids.mesh.edges import element_edges
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.penalties import n as penalization
@@ -37,9 +37,8 @@ from nonsmooth.scenes.symbols import x, y
 def applies(asked: StateCrossing) -> bool:
     """Whether the variable has one companion in its state, at a finite n, and a known box."""
     scene = asked.scene
-    known = scene.noise.kind in ("white", "langevin", "hamiltonian")
     held = asked.variable != x or math.isfinite(asked.lower + asked.upper) or scene.is_confined
-    return scene.dimension == 2 and math.isfinite(scene.n) and known and held
+    return scene.dimension == 2 and math.isfinite(scene.n) and is_known(scene) and held
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,14 @@ from sympy import Symbol
 from nonsmooth.errors import SceneError
 from nonsmooth.grids import tuning
 from nonsmooth.scenes.formulas import vectorised
+from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
+
+
+def is_known(scene: Scene) -> bool:
+    """Whether the invariant density of the noise is known, without which there is no box."""
+    return scene.noise.kind in NOISES
 
 
 def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
@@ -36,6 +42,11 @@ def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
         If the invariant density of the noise is not known, or the displacement is not held.
     """
     ends, noise = {}, scene.noise
+    if not is_known(scene):
+        raise SceneError(
+            f"solvers on grids do not know the invariant density of {noise.title}; "
+            "use method='monte_carlo' where there is one, or simulate"
+        )
     if noise.kind == "white":
         power = noise.sigma**2
     else:
@@ -85,11 +96,6 @@ def narrowed(
 
 def _of_noise(noise, depth):
     """Half widths of the variables of colored noise."""
-    if noise.kind not in ("langevin", "hamiltonian"):
-        raise SceneError(
-            f"solvers on grids do not know the invariant density of {noise.title}; "
-            "use method='monte_carlo'"
-        )
     search = tuning.BOX
     reach = np.linspace(0, search.farthest_noise, search.noise_points)[1:]
     if noise.kind == "langevin":
