@@ -7,8 +7,8 @@ import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
 from nonsmooth.linear_algebra import effort
 
-SCENE = ns.Scene("elasto_plastic", potential="x**2/2", n=10)
-ASKED = {"threshold": 1.0, "horizons": [1.0, 2.0]}
+SCENE = ns.Scene("friction", "langevin", n=5)
+ASKED = {"threshold": 0.3, "horizons": [3.0, 5.0]}
 
 
 def test_a_limit_is_for_all_that_is_called_within(monkeypatch):
@@ -38,8 +38,8 @@ def test_a_given_tolerance_is_not_limited(monkeypatch):
 
 CALLS = {
     "crossing": lambda **tol: ns.crossing_probability(SCENE, **ASKED, **tol),
-    "threshold": lambda **tol: ns.crossing_threshold(SCENE, 0.1, 2.0, **tol),
-    "time": lambda **tol: ns.failure_time(SCENE, 1.0, 0.1, **tol),
+    "threshold": lambda **tol: ns.crossing_threshold(SCENE, 0.1, 5.0, **tol),
+    "time": lambda **tol: ns.failure_time(SCENE, 0.3, 0.1, **tol),
 }
 
 
@@ -59,11 +59,11 @@ def test_paths_answer_what_takes_too_long(call, monkeypatch):
 @pytest.mark.slow
 def test_hazard_rates_are_counted_too(monkeypatch):
     """They hold the mean rate within a tenth of T, from survival probabilities."""
-    times = [1.9, 2.1]
-    ends = ns.crossing_probability(SCENE, 1.0, times, tol=1e-4)["survival"]
+    times = [4.9, 5.1]
+    ends = ns.crossing_probability(SCENE, 0.3, times, tol=1e-4)["survival"]
     mean = float(np.log(ends[0] / ends[1])) / (times[1] - times[0])
     monkeypatch.setattr(effort, "MOST", 1e10)
-    counted = ns.hazard_rate(SCENE, 1.0, [2.0]).squeeze()
+    counted = ns.hazard_rate(SCENE, 0.3, [5.0]).squeeze()
     assert counted.attrs["method"] == "monte_carlo"
     # the mean has errors of 2e-4 over S and the width; the rate hardly bends within it
     slack = 2e-4 / float(ends[1]) / (times[1] - times[0]) + 0.01 * mean
@@ -73,9 +73,9 @@ def test_hazard_rates_are_counted_too(monkeypatch):
 @pytest.mark.slow
 def test_the_mean_time_is_answered_too(monkeypatch):
     """By paths; both errors are stated."""
-    solved = ns.mean_time_to_failure(SCENE, 1.0, tol=1e-2)
+    solved = ns.mean_time_to_failure(SCENE, 0.3, tol=1e-2)
     monkeypatch.setattr(effort, "MOST", 1e10)
-    counted = ns.mean_time_to_failure(SCENE, 1.0)
+    counted = ns.mean_time_to_failure(SCENE, 0.3)
     assert (solved.method, counted.method) == ("deterministic", "monte_carlo")
     assert abs(solved.value - counted.value) <= solved.error + 3 * counted.error
 
@@ -84,7 +84,7 @@ def test_the_mean_time_is_answered_too(monkeypatch):
 @pytest.mark.filterwarnings("ignore::nonsmooth.errors.AccuracyWarning")
 def test_what_the_solver_has_until_then_is_right(monkeypatch):
     """However far it comes, what is returned is as near to counted paths as both state."""
-    asked = SCENE, 1.0, [5.8]
+    asked = ns.Scene("elasto_plastic", potential="x**2/2", n=10), 1.0, [5.8]
     counted = ns.crossing_probability(*asked, method="monte_carlo", tol=2e-3)
     for operations in (3e10, 1e11):
         monkeypatch.setattr(effort, "MOST", operations)
