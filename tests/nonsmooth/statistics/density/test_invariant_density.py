@@ -129,7 +129,7 @@ def test_loose_averages_of_what_friction_holds_are_within_their_errors():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("n", "finest"), [(10, 1e-2), (100, 2e-2)])
+@pytest.mark.parametrize(("n", "finest"), [(10, 1e-2), (100, 5e-2)])
 def test_loose_tolerances_are_within_their_errors(n, finest):
     """Also at rest at the wall, the only point at which grids converge slowly."""
     points = {"y": [0.0, 1.0], "x": [-1.0, 0.0, 1.0]}
