@@ -39,7 +39,7 @@ class TailEquation:
     lower, upper : float
         lower < 0 < upper, one of them possibly infinite.
     degree : int
-        Polynomial degree of the elements; a higher one also makes the steps shorter.
+        Polynomial degree of the elements; a higher one also makes elements and steps shorter.
 
     Raises
     ------
@@ -50,7 +50,7 @@ class TailEquation:
     """
 
     def __init__(self, tail: Tail, law: NormalLaw, lower: float, upper: float, degree: int):
-        self._tail, self._law, self._degree = tail, law, degree
+        self._tail = tail
         distance, self._other = (upper, -lower) if tail.towards > 0 else (-lower, upper)
         self._length = min(distance, reach(tail))
         if np.isinf(self._length):
@@ -59,7 +59,10 @@ class TailEquation:
                 "method='monte_carlo'"
             )
         self._gap = distance - self._length
-        self._grids: dict[int, _Grid] = {}
+        # one grid for all z, so that fits in z see no jumps between grids
+        size = tail.rate * 2 ** (degree / tuning.TAIL_EQUATION.degrees)
+        points = law.points(self._length)
+        self._grid = _Grid(tail, law.top, self._length, points, degree, size)
 
     def mean(self, z: complex, above: Waves, below: Waves) -> complex:
         """E exp(-z tau), the mean over paths and over the law at the beginning.
@@ -74,17 +77,8 @@ class TailEquation:
         -------
         complex
         """
-        tail = self._tail
-        # the grids for |z| up to a power of 2
-        octave = max(0, math.ceil(math.log2(abs(z) / tail.rate)))
-        if octave not in self._grids:
-            points = self._law.points(self._length)
-            size = tail.rate * 2**octave
-            self._grids[octave] = _Grid(
-                tail, self._law.top, self._length, points, self._degree, size
-            )
-        grid = self._grids[octave]
-        own, opposite = (above, below) if tail.towards > 0 else (below, above)
+        grid = self._grid
+        own, opposite = (above, below) if self._tail.towards > 0 else (below, above)
         ends, later = grid.step * np.arange(grid.count + 1), grid.stages * grid.step
         first: complex = 0.0
         boundary = np.zeros((grid.count, len(grid.stages)), complex)
@@ -99,7 +93,7 @@ class TailEquation:
 
 
 class _Grid:
-    """Elements in y and equal steps in s for |z| up to some size.
+    """Elements in y and equal steps in s, accurate for |z| up to some size, and stable beyond.
 
     Attributes
     ----------

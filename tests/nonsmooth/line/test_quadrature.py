@@ -21,7 +21,7 @@ def test_honest_on_random_observables():
     """Value, mean and their errors against 60 digits inside, 20 outside."""
     rng = np.random.default_rng(20240)
     with mp.workdps(60):
-        for _ in range(12):
+        for _ in range(8):
             scene, g, kinks = random_velocity(rng)
             reference = Reference(scene, g, kinks)
             exact = reference.variance()

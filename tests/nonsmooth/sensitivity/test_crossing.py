@@ -54,7 +54,7 @@ FORCE = ns.Scene("friction", observable="friction_force", n=5), (-0.6, 0.6)
 )
 def test_adjoint_and_differences(scene, levels, parameter):
     """The differentiated transform and differences of solutions agree within their errors."""
-    question = Question(scene, *levels, HORIZONS, 1.5)
+    question = Question(scene, *levels, np.array([2.0, 3.0]), 1.5)
     exact, error = first_passage.logarithmic_derivative(question, parameter, 1e-5)
     value, of_difference = differences.logarithmic_derivative(question, parameter, 1e-4)
     assert np.all(np.abs(exact - value) <= error + of_difference)
