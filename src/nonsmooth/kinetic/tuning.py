@@ -177,8 +177,8 @@ class TailEquation:
 
     unlikely: float = 30.0  # derived: ways exceeded with probability exp(-30) are left out
     stages: int = 5  # chosen: of the Radau IIA method, of order 9
-    # fitted: degrees by which the largest |z| doubles that is resolved; transforms are small beyond,
-    # and so are their errors, which degrees that are compared show
+    # chosen: degrees by which the largest |z| that is resolved doubles; transforms are small beyond
+    # it, and comparing degrees shows how small
     degrees: float = 3.0
     turn: float = 5.0  # chosen: largest |z| t of a step, t its duration, times the degree
     rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
