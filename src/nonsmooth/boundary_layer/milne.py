@@ -97,7 +97,7 @@ def layer_constants(
     if solved is not None:
         return solved
     kappa = _length(scene, tol, labelled(seed, "length"), threads)
-    gamma2 = limit_variance(scene, labelled(seed, "variance"), threads)
+    gamma2 = limit_variance(scene, seed, threads)
     u = _poisson_at_start(scene, abs(kappa.value), labelled(seed, "start"), threads)
     return (
         LayerConstants(gamma2.value / 2, (kappa.value, kappa.value), u.value),

@@ -6,14 +6,15 @@ The method is chosen by the scene and the tolerance.
 import math
 import time
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
 from nonsmooth.errors import answered, first_answer
 from nonsmooth.estimate import Estimate, not_negative
-from nonsmooth.grids.mesh.box import is_known
+from nonsmooth.grids.mesh import box
 from nonsmooth.line import quadrature
 from nonsmooth.line.dry_friction import friction_variance
+from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
@@ -93,18 +94,13 @@ def asymptotic_variance(
 
 
 def _fastest_first(scene, tol):
-    if not _on_grids(scene):
+    if not box.suits(scene):
         return ["monte_carlo"]
     accuracy = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
     if accuracy >= tuning.GAMMA2.faster_sampled[scene.dimension - 1]:
         return ["monte_carlo", "deterministic"]
     either = tol is None or tol >= MONTE_CARLO.tolerance
     return ["deterministic", "monte_carlo"] if either else ["deterministic"]
-
-
-def _on_grids(scene):
-    """Whether grids can solve the scene."""
-    return "y" in scene.state and is_known(scene)
 
 
 def _sampled(scene, tol, seed, threads):
@@ -138,6 +134,7 @@ def _deterministic(scene, tol, _seed, _threads):
 METHODS: dict[str, Callable] = {"deterministic": _deterministic, "monte_carlo": _sampled}
 
 
+@lru_cache(maxsize=16)  # formulas and the constants that correct them ask for the same
 def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = None) -> Estimate:
     """gamma^2 as accurately as formulas for crossing probabilities need it.
 
@@ -152,7 +149,8 @@ def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = No
     Estimate
     """
     # From three variables on, sampling is faster than solving, and a percent is enough for W_star.
-    if not _on_grids(scene) or scene.dimension > 2:
-        return asymptotic_variance(scene, None, "monte_carlo", seed, threads)
+    if not box.suits(scene) or scene.dimension > 2:
+        own = labelled(seed, "variance")
+        return asymptotic_variance(scene, None, "monte_carlo", own, threads)
     accuracy = None if scene.is_line else 2e-3
     return asymptotic_variance(scene, accuracy, "deterministic", seed, threads)

@@ -17,7 +17,7 @@ from nonsmooth.errors import ToleranceError, answered, first_answer
 from nonsmooth.estimate import Estimate
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.generator import evaluate
-from nonsmooth.grids.mesh.box import is_known
+from nonsmooth.grids.mesh import box
 from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, solver
 from nonsmooth.line import quadrature
 from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
@@ -74,7 +74,7 @@ def mean(
     if known and (exact := exact_mean(scene)) is not None:
         return exact
     ways = [method] if method else list(METHODS)
-    if method is None and not ("y" in scene.state and is_known(scene)):
+    if method is None and not box.suits(scene):
         ways = ["monte_carlo"]
 
     def present(found):

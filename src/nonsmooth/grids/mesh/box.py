@@ -19,6 +19,11 @@ def is_known(scene: Scene) -> bool:
     return scene.noise.kind in NOISES
 
 
+def suits(scene: Scene) -> bool:
+    """Whether grids can solve a scene: with the velocity, and noise whose density is known."""
+    return y.name in scene.state and is_known(scene)
+
+
 def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
     """Half widths of a box that holds the invariant density; the box may be much too large.
 
