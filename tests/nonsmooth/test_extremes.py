@@ -66,9 +66,6 @@ REFUSED = {
     "oscillations of four variables": lambda: ns.asymptotic_variance(
         obstacle(noise="hamiltonian", observable="x + sin(1e9*eta)")
     ),
-    "weak noise from afar": lambda: ns.failure_time(
-        friction(noise=ns.White(1e-6), start={"y": 5}), 0.2
-    ),
     "short steps": lambda: ns.simulate(friction(), 10, step=1e-12),
     "short steps of one path": lambda: ns.simulate(
         friction(), 10, step=1e-12, paths=1, keep="paths"

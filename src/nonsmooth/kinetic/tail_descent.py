@@ -48,9 +48,10 @@ class Tail:
     kinks : numpy.ndarray
         Velocities beyond the level at which drift or g may have a kink.
     floor : float
-        The largest such velocity up to the level, 0 if there is none.
+        The largest velocity below the start at which they may have one, 0 if there is none.
     lines : tuple or None
-        (value at 0, slope) of drift and of |g| beyond the floor; None if they are not linear.
+        (value at 0, slope) of drift and of |g| beyond the floor; None if they are not linear, or
+        have a kink beyond the start.
     """
 
     side: int
@@ -80,8 +81,8 @@ class Tail:
 
     @cached_property
     def descent(self) -> float:
-        """Time until which y stays above the level, at most `flight`; 0 if that is 0."""
-        return self._above(self.level)
+        """Time until which y stays above level and floor, at most `flight`; 0 if that is 0."""
+        return self._above(max(self.level, self.floor))
 
     def _above(self, velocity):
         """Time until which y stays above a velocity, if drift and g are linear down to there."""
@@ -173,8 +174,9 @@ def tail(scene: Scene) -> Tail:
     zeros = isolated_zeros(g, zeros, 2 * start)
     places = side * np.concatenate([[knot, -knot], zeros, *others])
     kinks = np.unique(places[places > level])
-    floor = max(places[(places > 0) & (places <= level)], default=0.0)
-    lines = None if len(kinks) else tuple(_line(f, probe) for f in (drift, speed))
+    floor = max(places[(places > 0) & (places < start)], default=0.0)
+    beyond = np.linspace(max(level, floor), 2 * start, settings.probed)[1:]
+    lines = None if np.any(places >= start) else tuple(_line(f, beyond) for f in (drift, speed))
     if lines and None in lines:
         lines = None
     return Tail(side, level, start, towards, drift, speed, scene.noise.sigma, kinks, floor, lines)

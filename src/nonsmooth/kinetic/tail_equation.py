@@ -112,7 +112,7 @@ class _Grid:
         settings = tuning.TAIL_EQUATION
         self._degree = degree
         slowest = speed[0] if speed[0] > 0 else np.max(speed)
-        steps = length * degree * size / (settings.turn * slowest) if slowest > 0 else 1.0
+        steps = length * size / (settings.turn * slowest) if slowest > 0 else 1.0
         self.count = max(1, math.ceil(steps))
         self.step = length / self.count
         width = self.step if self.step > 0 else 1.0

@@ -180,7 +180,7 @@ class TailEquation:
     # chosen: degrees by which the largest |z| that is resolved doubles; transforms are small beyond
     # it, and comparing degrees shows how small
     degrees: float = 3.0
-    turn: float = 5.0  # chosen: largest |z| t of a step, t its duration, times the degree
+    turn: float = 0.8  # chosen: largest |z| t of a step, t its duration
     rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
     width: float = 0.9  # chosen: width of elements over the spread of velocities on the way down
     beyond: float = 4.0  # chosen: spreads of y by which the grid reaches beyond the start

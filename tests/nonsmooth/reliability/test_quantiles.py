@@ -154,6 +154,18 @@ def test_times_of_near_thresholds():
     assert near["time_error"] < 1e-6 * near["time"]
 
 
+def test_times_of_paths_that_hardly_differ():
+    """The median is when the path without noise arrives; W rises within a part of 1e-7 of it.
+
+    With dy = -(1 + y) dt from 5, int y = 6 (1 - exp(-t)) - t.
+    """
+    found = ns.failure_time(ns.Scene("friction", ns.White(1e-6), start={"y": 5.0}), 0.2).squeeze()
+    exact = optimize.brentq(lambda t: 6 * (1 - np.exp(-t)) - t - 0.2, 0, 1, xtol=1e-16)
+    # the exact one is rounded to 1e-16
+    assert abs(found["time"] - exact) <= found["time_error"] + 1e-16
+    assert found["time_error"] < 1e-12
+
+
 @pytest.mark.parametrize("power", [0.5, 1.5])
 @pytest.mark.parametrize("level", [1e-12, 1.0, 1e12])
 def test_guesses_of_times(power, level):
