@@ -66,6 +66,12 @@ REFUSED = {
     "oscillations of four variables": lambda: ns.asymptotic_variance(
         obstacle(noise="hamiltonian", observable="x + sin(1e9*eta)")
     ),
+    "weak noise from afar": lambda: ns.crossing_probability(
+        friction(noise=ns.White(1e-2), observable="y*abs(y)", start={"y": 5}),
+        0.2,
+        [0.01],
+        method="deterministic",
+    ),
     "short steps": lambda: ns.simulate(friction(), 10, step=1e-12),
     "short steps of one path": lambda: ns.simulate(
         friction(), 10, step=1e-12, paths=1, keep="paths"
@@ -104,6 +110,9 @@ ANSWERED = {
         ns.crossing_probability(friction(noise=ns.White(1e-6), start={"y": 5}), 0.2, [0.041])[
             "probability"
         ].values
+    ),
+    "when they arrive": lambda: (
+        ns.failure_time(friction(noise=ns.White(1e-6), start={"y": 5}), 0.2)["time"].values
     ),
     "hardly any damping": lambda: ns.asymptotic_variance(friction(damping=1e-9)).value,
     "a late variance": lambda: ns.variance(friction(), [1e12])["v"].values,

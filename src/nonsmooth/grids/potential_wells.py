@@ -11,7 +11,7 @@ from nonsmooth.grids.mesh.box import half_widths, is_known
 from nonsmooth.grids.mesh.edges import potentials
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
-from nonsmooth.scenes.symbols import x
+from nonsmooth.scenes.symbols import x, y
 
 
 def starts(scene: Scene) -> list[dict[str, float]]:
@@ -24,14 +24,15 @@ def starts(scene: Scene) -> list[dict[str, float]]:
     Returns
     -------
     list of dict
-        Like `Scene.start`; a single one if no barrier holds paths up, or the invariant density of
-        the noise is not known.
+        Like `Scene.start`; a single one if no barrier holds paths up. Of a noise whose invariant
+        density is not known neither the temperature nor the potential is: all wells of U count.
     """
-    if not is_known(scene):
-        return [scene.start]
     chosen = tuning.POTENTIAL_WELLS
     finite = scene if math.isfinite(scene.n) else scene.with_n(chosen.stiff)
-    ends = half_widths(finite, chosen.depth)
+    if is_known(scene):
+        ends = half_widths(finite, chosen.depth)
+    else:
+        ends = {y: chosen.cold} | ({x: chosen.far} if x.name in scene.state else {})
     places = {}
     for symbol, (potential, temperature) in potentials(scene, ends).items():
         end = min(ends[symbol], scene.mechanics.wall) if symbol == x else ends[symbol]

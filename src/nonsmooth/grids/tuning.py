@@ -148,6 +148,10 @@ class PotentialWells:
     stiff: float = 1e6  # chosen: at n = inf the box of this n is searched
     barrier: float = 2.0  # chosen: lower barriers, in temperatures, hold no path up for long
     most: int = 4  # chosen: wells of one variable, of which the deepest are kept; bounds the cost
+    # chosen: displacements that are searched if nothing bounds them, and half width of velocities
+    # so low that any barrier holds a path
+    far: float = 20.0
+    cold: float = 1e-3
 
 
 BOX = Box()

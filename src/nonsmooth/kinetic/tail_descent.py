@@ -50,8 +50,8 @@ class Tail:
     floor : float
         The largest velocity below the start at which they may have one, 0 if there is none.
     lines : tuple or None
-        (value at 0, slope) of drift and of |g| beyond the floor; None if they are not linear, or
-        have a kink beyond the start.
+        (value at 0, slope) of drift and of |g| beyond the floor, up to where no path rises; None
+        if they are not linear there.
     """
 
     side: int
@@ -81,8 +81,12 @@ class Tail:
 
     @cached_property
     def descent(self) -> float:
-        """Time until which y stays above level and floor, at most `flight`; 0 if that is 0."""
-        return self._above(max(self.level, self.floor))
+        """Time until which y stays above level and floor, less than `flight`; 0 if that is 0.
+
+        Times after the flight are not too short, compared with it, to be told apart from there.
+        """
+        most = tuning.TAIL_DESCENT.share * self.flight
+        return min(self._above(max(self.level, self.floor)), most)
 
     def _above(self, velocity):
         """Time until which y stays above a velocity, if drift and g are linear down to there."""
@@ -175,8 +179,11 @@ def tail(scene: Scene) -> Tail:
     places = side * np.concatenate([[knot, -knot], zeros, *others])
     kinks = np.unique(places[places > level])
     floor = max(places[(places > 0) & (places < start)], default=0.0)
-    beyond = np.linspace(max(level, floor), 2 * start, settings.probed)[1:]
-    lines = None if np.any(places >= start) else tuple(_line(f, beyond) for f in (drift, speed))
+    # exceeded with a probability of exp(-2 spreads start / spread)
+    ceiling = start + settings.spreads * scene.noise.sigma * math.sqrt(start / drift(start))
+    beyond = np.linspace(max(level, floor), ceiling, settings.probed)[1:]
+    bent = np.any((places >= start) & (places < ceiling))
+    lines = None if bent else tuple(_line(f, beyond) for f in (drift, speed))
     if lines and None in lines:
         lines = None
     return Tail(side, level, start, towards, drift, speed, scene.noise.sigma, kinks, floor, lines)

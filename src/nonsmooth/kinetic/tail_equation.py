@@ -12,6 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
+from scipy.integrate import cumulative_trapezoid, trapezoid
 from scipy.linalg import solve_banded
 from scipy.linalg.lapack import zgbsv
 
@@ -60,7 +61,9 @@ class TailEquation:
             )
         self._gap = distance - self._length
         # one grid for all z, so that fits in z see no jumps between grids
-        size = tail.rate * 2 ** (degree / tuning.TAIL_EQUATION.degrees)
+        settings = tuning.TAIL_EQUATION
+        fastest = max(tail.rate, settings.front * front_rate(tail, law, distance))
+        size = fastest * 2 ** (degree / settings.degrees)
         points = law.points(self._length)
         self._grid = _Grid(tail, law.top, self._length, points, degree, size)
 
@@ -90,6 +93,39 @@ class TailEquation:
             boundary += opposite.grid(self._other + ends[-2::-1], grid.step - later)
         # where the wall is out of reach, the values there do not matter
         return grid.mean(z, first, boundary, 1.0 if self._gap == 0 else first)
+
+
+def front_rate(tail: Tail, law: NormalLaw, distance: float) -> float:
+    """Return one over the spread of the times at which paths reach a wall above the level.
+
+    A small change of the velocity, where it is u, lets a path turn up later at every velocity
+    below. So it adds (|g(u)| - |g(v)|) / drift(u) to the way at the time at which it is v.
+
+    Parameters
+    ----------
+    tail : Tail
+    law : NormalLaw
+        Of velocity and way at the beginning.
+    distance : float
+        Of the wall.
+
+    Returns
+    -------
+    float
+        By the standard deviation to first order in sigma; 0 if the path without noise arrives at
+        the level before, and inf if noise does not matter.
+    """
+    start, begun = law.mean
+    v = np.linspace(start, tail.level, tuning.TAIL_EQUATION.path)
+    way = begun + cumulative_trapezoid(tail.speed(v) / tail.drift(v), -v, initial=0.0)
+    if way[-1] < distance:
+        return 0.0
+    end = np.interp(distance, way, v)
+    v = np.linspace(start, end, tuning.TAIL_EQUATION.path)
+    drift, added = tail.drift(v), (tail.speed(v) - tail.speed(end)) / tail.drift(v)
+    first = np.array([added[0], 1.0])
+    variance = tail.sigma**2 * trapezoid(added**2 / drift, -v) + first @ law.covariance @ first
+    return float(tail.speed(end)) / math.sqrt(variance) if variance > 0 else math.inf
 
 
 class _Grid:
@@ -191,10 +227,11 @@ def _axis(tail, top, degree, size=0.0):
 
     edges, end = [tail.level], top + settings.beyond * spread(top)
     while edges[-1] < end:
-        if size == 0 and len(edges) > settings.most:
+        if len(edges) > settings.most:
             raise ToleranceError(
                 f"the start y = {tail.side * tail.start:g} is too far in the tails for a noise of "
-                f"sigma = {tail.sigma:g}; start nearer or use method='monte_carlo'"
+                f"sigma = {tail.sigma:g}, by which paths hardly differ; start nearer or use "
+                "method='monte_carlo'"
             )
         v = edges[-1]
         turned = settings.rotation * float(tail.drift(v)) / size if size > 0 else math.inf

@@ -167,6 +167,7 @@ class TailDescent:
     probed: int = 2001  # chosen: points at which the sign and the slope of g are looked at
     linear: float = 1e-12  # derived: relative deviations from a line up to this are rounding
     times: int = 401  # chosen: times among which the end of the descent is sought
+    share: float = 0.8  # chosen: the descent is so much of the flight, at most
     series: float = 1e-2  # derived: below it a series gives the variance; its next term is 1e-12
     rate: float = 3.0  # chosen: factor of safety on the rate of change of the solution at the level
 
@@ -180,6 +181,10 @@ class TailEquation:
     # chosen: degrees by which the largest |z| that is resolved doubles; transforms are small beyond
     # it, and comparing degrees shows how small
     degrees: float = 3.0
+    # chosen: that |z| times the spread of arrivals, but for the factor by the degree; a normal law
+    # is exp(-1.3) there with the degree 9, exp(-3) with 11 and exp(-13) with 14, which differ
+    front: float = 0.2
+    path: int = 1001  # chosen: points on the path without noise
     turn: float = 0.8  # chosen: largest |z| t of a step, t its duration
     rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
     width: float = 0.9  # chosen: width of elements over the spread of velocities on the way down

@@ -152,7 +152,7 @@ def searched(
     search, wanted = tuning.SEARCH, equivalent(reference, target, sense)
     x, left, right = guess[0], 0.0, np.inf
     points: list[_Point] = []
-    known: tuple[_Point, float, float, float] | None = None
+    known: tuple[_Point, float, float] | None = None
     for number in range(search.most):
         places = around(x, 0.0 if number else beside)
         try:
@@ -169,7 +169,7 @@ def searched(
         points += new
         base = min(points, key=lambda point: abs(point.gap))
         slope, doubt = _slope(points, base, guess[1])
-        known = base, slope, doubt, guess[1]
+        known = base, slope, doubt
         root = _by_slope(*known, search.vague)
         if root is not None:
             return root
@@ -260,21 +260,20 @@ def _slope(points, base, guess):
         if run == 0 or not 0 < rise / run < np.inf:
             continue
         errors = one.error + two.error
-        farthest = max(
-            _distance(point.place - base.place, point.gap - base.gap, guess) for point in (one, two)
-        )
-        doubt = errors / abs(rise) + tuning.SEARCH.bend * farthest
+        bent = max(_bent(point.place - base.place, point.gap - base.gap) for point in (one, two))
+        doubt = errors / abs(rise) + bent
         if doubt < min(best[1], tuning.SEARCH.told):
             best = rise / run, doubt
     return best
 
 
-def _distance(change, reached, guess):
-    """Return over how much of log x a slope may change; more, if log x* changes unusually fast."""
-    return np.maximum(np.abs(change), np.abs(reached) / (tuning.SEARCH.steep * guess))
+def _bent(way, reached):
+    """Return the relative change of a slope over a way in log x and one in log x*, at most."""
+    search = tuning.SEARCH
+    return np.maximum(search.bend * np.abs(way), search.front * np.abs(reached))
 
 
-def _by_slope(base, slope, doubt, guess, most):
+def _by_slope(base, slope, doubt, most):
     """Return the root that a point and the slope tell, or None where they tell too little.
 
     What the slope leaves open may be so many times what an error of W does that is good enough.
@@ -284,7 +283,7 @@ def _by_slope(base, slope, doubt, guess, most):
     ways = -gaps / slope
     if not np.all(np.isfinite(ways)):
         return None
-    doubts = doubt + search.bend * _distance(ways, gaps, guess)
+    doubts = doubt + _bent(ways, gaps)
     vague = abs(base.gap) * doubt > most * base.wanted + search.rounding
     if vague or doubts.max() > search.doubt:
         return None

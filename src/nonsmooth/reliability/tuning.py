@@ -41,9 +41,9 @@ class Search:
     bend: float = 2.0
     doubt: float = 0.3
     vague: float = 1.0
-    # chosen: a slope above so many times its guess is unusual; it may then change as much over a
-    # change of log x* by one, which is less of log x
-    steep: float = 3.0
+    # derived: relative change of that slope for a change of log x* by 1, where W rises within a
+    # small part of x; 0.47 at most for a normal law, and twice as much
+    front: float = 1.0
     told: float = 1.0  # chosen: doubt from which on a guess of the slope is better
     wide: float = 10.0  # chosen: first step over the error, so that the slope is seen
     rounding: float = 1e-12  # derived: relative distance of roots that rounding cannot tell apart

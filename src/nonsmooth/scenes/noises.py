@@ -210,16 +210,22 @@ class Hamiltonian:
         H, settings = vectorised(self.energy, (eta, zeta)), tuning.FAR_OUT
         beside = np.array([0.0, -settings.direction, settings.direction])
         least = []
-        for r, near in zip(settings.distances, angle[energy.argmin(axis=1)], strict=True):
+        for r, known in zip(settings.distances, energy, strict=True):
+            lowest = known <= np.minimum(np.roll(known, 1), np.roll(known, -1))
+            found = []
+            for near in angle[lowest]:
 
-            def at(a, r=r):
-                return H(r * np.cos(a), r * np.sin(a))
+                def at(turn, near=near, r=r):
+                    return H(r * np.cos(near + turn), r * np.sin(near + turn))
 
-            bounds = near + angle[1] * np.array([-1, 1])
-            found = minimize_scalar(
-                at, bounds=bounds, method="bounded", options={"xatol": settings.direction}
-            ).x
-            least.append(at(min(near, found, key=at) + beside))
+                turn = minimize_scalar(
+                    at,
+                    bounds=(-angle[1], angle[1]),
+                    method="bounded",
+                    options={"xatol": settings.converged},
+                ).x
+                found.append(at(min(0.0, turn, key=at) + beside))
+            least.append(min(found, key=lambda values: values[0]))
         least = np.array(least)
         # on a ray on which H is constant it changes by what rounding does to the direction
         change = np.max(least[-1]) - least[-1, 0]

@@ -9,12 +9,11 @@ from collections.abc import Callable
 from functools import lru_cache, partial
 
 from nonsmooth.checks import require_choice, require_seed, require_threads, require_tolerance
-from nonsmooth.errors import answered, first_answer
+from nonsmooth.errors import ToleranceError, answered, first_answer
 from nonsmooth.estimate import Estimate, not_negative
 from nonsmooth.grids.mesh import box
 from nonsmooth.line import quadrature
 from nonsmooth.line.dry_friction import friction_variance
-from nonsmooth.paths.kernels.random_numbers import labelled
 from nonsmooth.paths.tuning import MONTE_CARLO
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
@@ -134,7 +133,6 @@ def _deterministic(scene, tol, _seed, _threads):
 METHODS: dict[str, Callable] = {"deterministic": _deterministic, "monte_carlo": _sampled}
 
 
-@lru_cache(maxsize=16)  # formulas and the constants that correct them ask for the same
 def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = None) -> Estimate:
     """gamma^2 as accurately as formulas for crossing probabilities need it.
 
@@ -148,9 +146,24 @@ def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = No
     -------
     Estimate
     """
+    found = _limit_variance(scene, seed, threads)
+
+    def solve():
+        if isinstance(found, ToleranceError):
+            raise found
+        return found
+
+    return answered(solve, lambda estimate: estimate, tol_given=False)
+
+
+@lru_cache(maxsize=16)  # formulas and the constants that correct them ask for the same
+def _limit_variance(scene, seed, threads):
+    """Return gamma^2, or what tells that it is not as accurate as it should be."""
     # From three variables on, sampling is faster than solving, and a percent is enough for W_star.
-    if not box.suits(scene) or scene.dimension > 2:
-        own = labelled(seed, "variance")
-        return asymptotic_variance(scene, None, "monte_carlo", own, threads)
-    accuracy = None if scene.is_line else 2e-3
-    return asymptotic_variance(scene, accuracy, "deterministic", seed, threads)
+    sampled = not box.suits(scene) or scene.dimension > 2
+    method = "monte_carlo" if sampled else "deterministic"
+    accuracy = MONTE_CARLO.tolerance if sampled else None if scene.is_line else 2e-3
+    try:
+        return asymptotic_variance(scene, accuracy, method, seed, threads)
+    except ToleranceError as refused:
+        return refused.with_traceback(None)

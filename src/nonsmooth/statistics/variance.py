@@ -17,6 +17,7 @@ from nonsmooth.checks import (
 )
 from nonsmooth.errors import SceneError, ToleranceError, answered, first_answer
 from nonsmooth.estimate import not_negative
+from nonsmooth.grids.mesh import box
 from nonsmooth.line import eigenfunctions, quadrature
 from nonsmooth.refine import until_agreement
 from nonsmooth.results import dataset
@@ -168,7 +169,7 @@ def _solver(scene: Scene) -> Callable | None:
     """Choose the function of (scene, times, tol) that solves for w and v; None if there is none."""
     if scene.is_line:
         return _of_velocity
-    if scene.dimension == 2 and not math.isinf(scene.n) and "y" in scene.state:
+    if scene.dimension == 2 and not math.isinf(scene.n) and box.suits(scene):
         return moments_on_grids.moments
     return None
 

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from nonsmooth.kinetic.case_modes import modes
 from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.tail_descent import tail
-from nonsmooth.kinetic.tail_equation import TailEquation, radau, reach
+from nonsmooth.kinetic.tail_equation import TailEquation, front_rate, radau, reach
 from references import far
 
 
@@ -44,6 +45,18 @@ def test_mean_over_the_normal_law():
     )
     assert out.law(out.descent).passed(3.0) < 1e-15
     assert abs(at_once - np.exp(-z * out.descent) * later) < 1e-9  # what `NormalLaw` leaves out
+
+
+@pytest.mark.parametrize("begun", [0.0, 0.5])
+def test_the_spread_of_arrivals(begun):
+    """With linear drift and g it is that of the way at the time of arrival, over the velocity."""
+    out, distance = tail(far(5.0)), 2.0
+    arrival = brentq(lambda t: out.law(t).mean[1] - distance, 0, 1)
+    law = out.law(arrival)
+    exact = law.mean[0] / np.sqrt(law.covariance[1, 1])
+    # the trapezoidal rule with 1001 points
+    assert front_rate(out, out.law(begun * arrival), distance) == pytest.approx(exact, rel=1e-4)
+    assert front_rate(out, out.law(0.0), 20.0) == front_rate(out, out.law(0.0), np.inf) == 0.0
 
 
 def test_the_longest_way():

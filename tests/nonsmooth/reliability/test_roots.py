@@ -75,7 +75,8 @@ def test_limits_hold_the_root_if_those_of_W_hold(target, wrong, sense, warp):
 
 @pytest.mark.parametrize("spread", [1e-6, 1e-4, 1e-2])
 @pytest.mark.parametrize("wrong", [-1.0, 0.9])
-def test_limits_hold_where_W_rises_within_a_spread(spread, wrong):
+@pytest.mark.parametrize("guessed", [1.0, 10.0])
+def test_limits_hold_where_W_rises_within_a_spread(spread, wrong, guessed):
     """Int g is normal about 6 (1 - exp(-T)) - T, as when friction slows a fast start down."""
     rng = np.random.default_rng(11)
 
@@ -83,16 +84,15 @@ def test_limits_hold_where_W_rises_within_a_spread(spread, wrong):
         mean = 6 * (1 - np.exp(-x)) - x
         return stats.norm.cdf((mean - level) / spread)
 
-    for _ in range(10):
-        # int g reaches 3.2 at the latest, at T = 1.79
-        level, target = rng.uniform(0.05, 2.0), rng.uniform(0.02, 0.98)
+    for target in (1e-6, 1e-3, 0.02, 0.3, 0.5, 0.9, 0.98, 0.999):
+        level = rng.uniform(0.05, 2.0)  # int g reaches 3.2 at the latest, at T = 1.79
         error = 10 ** rng.uniform(-10, -2) * min(target, 1 - target)
 
         def shown(x, level=level, error=error):
             W = np.clip(law(np.asarray(x), level) + wrong * error, 0, 1)
             return Values(W, np.full(len(x), error), W - error, W + error)
 
-        guess = rng.uniform(0.5, 2) * level / 5, 1.0
+        guess = rng.uniform(0.5, 2) * level / 5, guessed
         root = solved_root(shown, REFERENCE[RISING], target, guess, RISING)
         ends = law(np.array([root.lower, root.upper]), level)
         assert ends[0] <= target <= ends[1]

@@ -10,6 +10,7 @@ from scipy import integrate, linalg, stats
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError
+from nonsmooth.grids import potential_wells
 from nonsmooth.paths.schemes import strang
 from nonsmooth.scenes.noises import Noise
 from nonsmooth.scenes.symbols import eta, zeta
@@ -151,16 +152,29 @@ def test_a_noise_of_another_kind_is_simulated():
 
 @pytest.mark.slow
 def test_paths_answer_for_a_noise_of_another_kind():
-    """The filters leave the white noise's intensity, 1, to slow motions; E eta^2 is 1/4.
+    """Solvers know another noise of the same law, eta'' + 2 eta' + eta = dW/dt.
 
     Errors hold 4.5 fold; false alarms 7e-6 each.
     """
-    scene = ns.Scene("friction", Filtered(), observable="eta")
+    same = ns.KanaiTajimi(stiffness=1.0, damping=2.0)
+    scene, solved = (ns.Scene("friction", noise, n=10) for noise in (Filtered(), same))
     for found, exact in (
-        (ns.asymptotic_variance(scene), 1.0),
-        (ns.mean(scene.with_observable("eta**2")), 0.25),
+        (ns.asymptotic_variance(scene, 0.1), ns.asymptotic_variance(solved, 1e-3)),
+        (
+            ns.mean(scene.with_observable("y**2"), 1e-3),
+            ns.mean(solved.with_observable("y**2"), 1e-4),
+        ),
     ):
-        assert abs(found.value - exact) <= 4.5 * found.error
-    held = ns.Scene("obstacle", Filtered(), n=10, potential="x**2/2", observable="x")
-    length = ns.extrapolation_length(held)
-    assert 0 < length.error < length.value
+        assert found.method == "Monte Carlo"
+        assert exact.method != "Monte Carlo"
+        assert abs(found.value - exact.value) <= 4.5 * found.error + exact.error
+    moments = ns.variance(ns.Scene("friction", Filtered(), n=100), [1.0], 0.1)
+    assert moments.attrs["method"] == "monte_carlo"
+
+
+def test_wells_under_a_noise_of_another_kind():
+    """All wells of U hold paths for long under a noise whose temperature is not known."""
+    double = ns.Scene("obstacle", Filtered(), potential="5*(x**2 - 0.25)**2", observable="x")
+    found = potential_wells.starts(double)
+    assert [point["x"] for point in found] == pytest.approx([-0.5, 0.5], abs=0.01)
+    assert potential_wells.starts(ns.Scene("friction", Filtered())) == [{}]

@@ -65,6 +65,8 @@ def test_impossible_scenes_are_refused(scene, offender):
         (lambda: ns.Hamiltonian("eta**2", "1"), "does not confine"),
         (lambda: ns.Hamiltonian("(eta + zeta)**2", "1"), "does not confine"),
         (lambda: ns.Hamiltonian("(eta + 2*zeta)**2", "1"), "does not confine"),
+        (lambda: ns.Hamiltonian("(eta + 2*zeta)**4", "1"), "does not confine"),
+        (lambda: ns.Hamiltonian("(eta + 2*zeta)**2*(1 + eta**2)", "1"), "does not confine"),
         (lambda: ns.Hamiltonian("eta**2/2 + zeta**2/2", "-1"), "not positive"),
         (lambda: ns.KanaiTajimi(stiffness=0), "stiffness of the noise is 0"),
     ],

@@ -1,7 +1,7 @@
 """The box outside which the invariant density of a scene is too small to matter."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from sympy import Symbol
@@ -9,14 +9,13 @@ from sympy import Symbol
 from nonsmooth.errors import SceneError
 from nonsmooth.grids import tuning
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.noises import NOISES
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
 
 
 def is_known(scene: Scene) -> bool:
     """Whether the invariant density of the noise is known, without which there is no box."""
-    return scene.noise.kind in NOISES
+    return scene.noise.kind in _OF_NOISE
 
 
 def suits(scene: Scene) -> bool:
@@ -46,16 +45,15 @@ def half_widths(scene: Scene, depth: float) -> dict[Symbol, float]:
     SceneError
         If the invariant density of the noise is not known, or the displacement is not held.
     """
-    ends, noise = {}, scene.noise
+    noise = scene.noise
     if not is_known(scene):
         raise SceneError(
             f"solvers on grids do not know the invariant density of {noise.title}; "
             "use method='monte_carlo' where there is one, or simulate"
         )
-    if noise.kind == "white":
-        power = noise.sigma**2
-    else:
-        ends = _of_noise(noise, depth)
+    ends = _OF_NOISE[noise.kind](noise, depth)
+    power = noise.sigma**2
+    if eta in ends:
         # A forcing acts like white noise of the intensity sigma^2 = 2 var(eta) times its relaxation
         # time, or less. If its density is about normal, var(eta) is ends^2 / (2 depth). The factor
         # 4 leaves room for relaxation times above 1.
@@ -99,18 +97,25 @@ def narrowed(
     return ends
 
 
-def _of_noise(noise, depth):
-    """Half widths of the variables of colored noise."""
+def _reach():
+    """Return the distances at which densities of noises are looked at."""
+    return np.linspace(0, tuning.BOX.farthest_noise, tuning.BOX.noise_points)[1:]
+
+
+def _of_langevin(noise, depth):
+    """Half width of eta."""
+    reach, v = _reach(), vectorised(noise.potential_expression, (eta,))
+    allowed = depth * noise.sigma**2 / 2
+    both = np.minimum(v(reach), v(-reach)) - min(v(reach).min(), v(-reach).min(), v(0.0))
+    return {eta: _last_below(reach, both, allowed)}
+
+
+def _of_hamiltonian(noise, depth):
+    """Half widths of eta and zeta."""
     search = tuning.BOX
-    reach = np.linspace(0, search.farthest_noise, search.noise_points)[1:]
-    if noise.kind == "langevin":
-        v = vectorised(noise.potential_expression, (eta,))
-        allowed = depth * noise.sigma**2 / 2
-        both = np.minimum(v(reach), v(-reach)) - min(v(reach).min(), v(-reach).min(), v(0.0))
-        return {eta: _last_below(reach, both, allowed)}
     energy = vectorised(noise.energy, (eta, zeta))
     angle = np.linspace(0, 2 * np.pi, search.rays, endpoint=False)
-    radius = reach[:: search.ray_stride, None]
+    radius = _reach()[:: search.ray_stride, None]
     rays = radius * np.cos(angle), radius * np.sin(angle)
     H = energy(*rays)
     near = np.hypot(*rays) < search.near
@@ -121,6 +126,14 @@ def _of_noise(noise, depth):
         symbol: search.spare * float(np.max(np.abs(ray)[inside], initial=search.least))
         for symbol, ray in zip((eta, zeta), rays, strict=True)
     }
+
+
+# by the kind of the noise
+_OF_NOISE: dict[str, Callable] = {
+    "white": lambda noise, depth: {},
+    "langevin": _of_langevin,
+    "hamiltonian": _of_hamiltonian,
+}
 
 
 def _last_below(reach, values, allowed):

@@ -16,7 +16,7 @@ from nonsmooth.checks import (
 )
 from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.grids import tensor_grid
-from nonsmooth.grids.mesh.box import half_widths
+from nonsmooth.grids.mesh.box import half_widths, suits
 from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.symbols import TITLES, x
@@ -79,11 +79,11 @@ def invariant_density(
     method = None if method is None else require_choice("method", method, METHODS)
     seed, threads = require_seed(seed), require_threads(threads)
     closed = closed_form(scene) if method != "monte_carlo" else {}
-    sampling = method == "monte_carlo" or math.isinf(scene.n) or "y" not in scene.state
+    sampling = method == "monte_carlo" or math.isinf(scene.n) or not suits(scene)
     if method == "deterministic" and sampling and not closed:
         raise SceneError(
-            "at n = inf, and without the velocity, the density is not solved for; choose a finite "
-            "n, another observable or method='monte_carlo'"
+            "at n = inf, without the velocity or with a noise of another kind, densities are not "
+            "solved for; choose a finite n, another observable or noise, or method='monte_carlo'"
         )
     accuracy = tuning.INVARIANT_DENSITY.tol[scene.dimension] if tol is None else tol
     if closed:
@@ -164,7 +164,7 @@ def _support(scene, accuracy):
     limit = math.isinf(scene.n)
     soft = scene.with_n(tuning.SAMPLED_DENSITY.soft) if limit else scene
     try:
-        grid = _grid(soft, accuracy, None) if "y" in scene.state else None
+        grid = _grid(soft, accuracy, None) if suits(scene) else None
         depth = tensor_grid.depth_for(accuracy)
         ends = half_widths(soft, depth) if grid is None else grid.ends
     except SceneError as unknown:
