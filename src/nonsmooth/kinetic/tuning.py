@@ -182,8 +182,8 @@ class TailEquation:
     # it, and comparing degrees shows how small
     degrees: float = 3.0
     # chosen: that |z| times the spread of arrivals, but for the factor by the degree; a normal law
-    # is exp(-1.3) there with the degree 9, exp(-3) with 11 and exp(-13) with 14, which differ
-    front: float = 0.2
+    # is exp(-3) there with the degree 9, exp(-7) with 11 and exp(-29) with 14, which differ
+    front: float = 0.3
     path: int = 1001  # chosen: points on the path without noise
     turn: float = 0.8  # chosen: largest |z| t of a step, t its duration
     rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
