@@ -105,6 +105,7 @@ def test_table_6_has_its_scene_within_its_errors(smoke_run):
     assert (table["W_star_error"] < 0.1).all()
 
 
+@pytest.mark.slow
 def test_the_code_in_the_paper_runs(smoke_run):
     """It gives the last probability of the corrected formula, by another gamma^2 and kappa."""
     results = smoke_run.folder / RESULTS

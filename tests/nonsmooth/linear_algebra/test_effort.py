@@ -27,6 +27,7 @@ def test_a_limit_is_for_all_that_is_called_within(monkeypatch):
     assert not effort.holds()
 
 
+@pytest.mark.slow
 def test_a_given_tolerance_is_not_limited(monkeypatch):
     """It is for the one who gives it to wait."""
     monkeypatch.setattr(effort, "MOST", 0.0)

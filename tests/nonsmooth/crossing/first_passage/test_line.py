@@ -197,6 +197,7 @@ class TestDeterministic:
         assert np.all(gap < 4.5 * sample.standard_error + bias)
 
 
+@pytest.mark.slow
 def test_what_a_basis_is_off_counts(monkeypatch):
     """It is an error of W at late times, by about as much."""
     off = 1e-5

@@ -98,6 +98,7 @@ def test_copies_of_the_library_share_what_they_compiled(library, tmp_path):
     assert hits == ["0\n", "1\n"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif("+avx512f" not in get_host_cpu_features(), reason="has narrower vectors")
 def test_vectors_are_as_wide_as_can_be_and_change_no_bit(library):
     """What others compile is left alone, and NUMBA_CPU_FEATURES is respected."""

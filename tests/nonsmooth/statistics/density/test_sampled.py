@@ -39,6 +39,7 @@ def test_closed_forms_are_within_the_errors(scene):
         assert found[f"density_{name}"].attrs["cell_methods"] == f"{name}: mean"
 
 
+@pytest.mark.slow
 def test_grids_are_within_the_errors():
     """Averages over cells of a yielding structure, marginals and both variables alike."""
     scene = ns.Scene("elasto_plastic", n=10, potential="x**2/2")
@@ -126,6 +127,7 @@ def test_cells_that_no_path_visits_are_not_known():
     assert float(found.density_y_error) > 0
 
 
+@pytest.mark.slow
 def test_threads_change_no_bit():
     """Blocks are added in their order; and the law of an odd scene is its own mirror image."""
     points = {"eta": np.linspace(-2, 2, 5), "y": np.linspace(-1, 1, 5)}
