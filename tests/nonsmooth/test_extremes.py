@@ -114,6 +114,11 @@ ANSWERED = {
     "when they arrive": lambda: (
         ns.failure_time(friction(noise=ns.White(1e-6), start={"y": 5}), 0.2)["time"].values
     ),
+    "long after an arrival": lambda: (
+        ns.crossing_probability(
+            friction(observable="sign(y)", start={"y": 5}), 0.2, [0.1, 1.0], method="deterministic"
+        )["probability"].values
+    ),
     "hardly any damping": lambda: ns.asymptotic_variance(friction(damping=1e-9)).value,
     "a late variance": lambda: ns.variance(friction(), [1e12])["v"].values,
     "a pole that can be integrated": lambda: (

@@ -25,7 +25,8 @@ def starts(scene: Scene) -> list[dict[str, float]]:
     -------
     list of dict
         Like `Scene.start`; a single one if no barrier holds paths up. Of a noise whose invariant
-        density is not known neither the temperature nor the potential is: all wells of U count.
+        density is not known neither the temperature nor the potential is: all wells of U near 0
+        count.
     """
     chosen = tuning.POTENTIAL_WELLS
     finite = scene if math.isfinite(scene.n) else scene.with_n(chosen.stiff)

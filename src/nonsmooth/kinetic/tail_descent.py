@@ -81,9 +81,9 @@ class Tail:
 
     @cached_property
     def descent(self) -> float:
-        """Time until which y stays above level and floor, less than `flight`; 0 if that is 0.
+        """Time until which y stays above level and floor; 0 if `flight` is 0.
 
-        Times after the flight are not too short, compared with it, to be told apart from there.
+        It ends well before the flight, so that times after the flight are not too near to its end.
         """
         most = tuning.TAIL_DESCENT.share * self.flight
         return min(self._above(max(self.level, self.floor)), most)
@@ -220,7 +220,9 @@ class NormalLaw:
     def passed(self, way: float) -> float:
         """P(int |g| >= way), for a positive way."""
         spread = np.sqrt(self.covariance[1, 1])
-        return float(ndtr((self.mean[1] - way) / spread)) if spread > 0 else 0.0
+        if spread == 0:  # as where g is constant
+            return float(self.mean[1] >= way)
+        return float(ndtr((self.mean[1] - way) / spread))
 
     def points(self, way: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Quadrature points for the law of (y, int |g|) given that int |g| < way.

@@ -96,7 +96,7 @@ class TailEquation:
 
 
 def front_rate(tail: Tail, law: NormalLaw, distance: float) -> float:
-    """Return one over the spread of the times at which paths reach a wall above the level.
+    """Return how fast W rises when paths reach a wall above the level: one over their spread.
 
     A small change of the velocity, where it is u, lets a path turn up later at every velocity
     below. So it adds (|g(u)| - |g(v)|) / drift(u) to the way at the time at which it is v.
@@ -105,15 +105,20 @@ def front_rate(tail: Tail, law: NormalLaw, distance: float) -> float:
     ----------
     tail : Tail
     law : NormalLaw
-        Of velocity and way at the beginning.
+        Of velocity and way at the beginning, as if paths went on beyond the wall.
     distance : float
         Of the wall.
 
     Returns
     -------
     float
-        By the standard deviation to first order in sigma; 0 if the path without noise arrives at
-        the level before, and inf if noise does not matter.
+        By the standard deviation to first order in sigma; 0 if the path without noise is at the
+        level before.
+
+    Raises
+    ------
+    ToleranceError
+        If it rises so fast that a transform does not tell W.
     """
     start, begun = law.mean
     v = np.linspace(start, tail.level, tuning.TAIL_EQUATION.path)
@@ -125,7 +130,10 @@ def front_rate(tail: Tail, law: NormalLaw, distance: float) -> float:
     drift, added = tail.drift(v), (tail.speed(v) - tail.speed(end)) / tail.drift(v)
     first = np.array([added[0], 1.0])
     variance = tail.sigma**2 * trapezoid(added**2 / drift, -v) + first @ law.covariance @ first
-    return float(tail.speed(end)) / math.sqrt(variance) if variance > 0 else math.inf
+    spread = math.sqrt(max(variance, 0.0)) / float(tail.speed(end))
+    if trapezoid(1 / drift, -v) > tuning.TAIL_EQUATION.sharpest * spread:
+        raise _too_sharp(tail)
+    return 1 / spread
 
 
 class _Grid:
@@ -152,6 +160,8 @@ class _Grid:
         self.count = max(1, math.ceil(steps))
         self.step = length / self.count
         width = self.step if self.step > 0 else 1.0
+        if self.count * len(speed) ** 2 > settings.work:
+            raise _too_sharp(tail)
         self._pace = speed[1:] / width
         self._band, self._entering = _band(generator[1:, 1:], degree), generator[1:, 0]
         self.stages, matrix = radau(settings.stages)
@@ -228,16 +238,20 @@ def _axis(tail, top, degree, size=0.0):
     edges, end = [tail.level], top + settings.beyond * spread(top)
     while edges[-1] < end:
         if len(edges) > settings.most:
-            raise ToleranceError(
-                f"the start y = {tail.side * tail.start:g} is too far in the tails for a noise of "
-                f"sigma = {tail.sigma:g}, by which paths hardly differ; start nearer or use "
-                "method='monte_carlo'"
-            )
+            raise _too_sharp(tail)
         v = edges[-1]
         turned = settings.rotation * float(tail.drift(v)) / size if size > 0 else math.inf
         edges.append(v + min(v, settings.width * spread(v), turned))
     edges = np.array(edges)
     return continuous(np.unique(np.append(edges, tail.kinks[tail.kinks < edges[-1]])), degree)
+
+
+def _too_sharp(tail):
+    """Say that paths differ so little that the grid would be too fine."""
+    return ToleranceError(
+        f"paths from the start y = {tail.side * tail.start:g} far in the tails hardly differ by a "
+        f"noise of sigma = {tail.sigma:g}; start nearer or use method='monte_carlo'"
+    )
 
 
 def _generator(tail, axis: Axis):

@@ -185,11 +185,13 @@ class TailEquation:
     # is exp(-3) there with the degree 9, exp(-7) with 11 and exp(-29) with 14, which differ
     front: float = 0.3
     path: int = 1001  # chosen: points on the path without noise
+    sharpest: float = 30.0  # chosen: mean time of arrival over the spread, at most
+    work: float = 5e8  # chosen: steps times squared nodes, at most; about a second for each z
     turn: float = 0.8  # chosen: largest |z| t of a step, t its duration
     rotation: float = 40.0  # chosen: largest |z| t of the fall through an element
     width: float = 0.9  # chosen: width of elements over the spread of velocities on the way down
     beyond: float = 4.0  # chosen: spreads of y by which the grid reaches beyond the start
-    most: int = 400  # chosen: elements for the bound of the longest way; they take two seconds
+    most: int = 400  # chosen: elements; the bound of the longest way takes two seconds then
     coarse: int = 7  # chosen: polynomial degree for the bound of the longest way
     exponents: int = 49  # chosen: exponents theta tried for that bound, over six decades
 

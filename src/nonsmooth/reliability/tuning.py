@@ -36,14 +36,13 @@ class Search:
     first: float = 2.0  # chosen: largest factor to the first limits
     close: float = 0.1  # chosen: distance of W from P, over the error of W, at which it ends
     ends: float = 50.0  # derived: log x within which Brownian motion crosses with any P but 0 and 1
-    # chosen: relative change of the slope of log x* over log x, for a change of log x by 1; the
-    # largest doubt of the slope, and the largest doubt of the root over the error
-    bend: float = 2.0
+    bend: float = 2.0  # chosen: relative change of the slope of log x* for a change of log x by 1
+    # derived: the same for a change of log x* by 1, where W rises within a small part of x; with a
+    # normal law it is below 1 for thresholds and 0.48 for times
+    front: float = 1.0
+    # chosen: largest doubt of the slope, and largest doubt of the root over the error
     doubt: float = 0.3
     vague: float = 1.0
-    # derived: relative change of that slope for a change of log x* by 1, where W rises within a
-    # small part of x; 0.47 at most for a normal law, and twice as much
-    front: float = 1.0
     told: float = 1.0  # chosen: doubt from which on a guess of the slope is better
     wide: float = 10.0  # chosen: first step over the error, so that the slope is seen
     rounding: float = 1e-12  # derived: relative distance of roots that rounding cannot tell apart

@@ -14,9 +14,9 @@ class FarOut:
     # reasonable formula to dominate, near enough for its powers not to overflow
     distances: tuple[float, ...] = (1e2, 1e3, 1e4, 1e6)
     directions: int = 16  # chosen: rays along which a Hamiltonian is examined
-    # chosen: accuracy of the direction in which it grows least, of which the search reaches some
-    # hundredths; H changes by its square there
-    direction: float = 1e-6
+    # chosen: accuracy of the direction in which it grows least, ten times what the search reaches;
+    # H changes by its square there
+    direction: float = 1e-7
     converged: float = 1e-9  # chosen: change of the direction at which that search ends
     # chosen: a ratio whose value at the last distance is below this part of its value at the first
     # is taken to vanish at infinity; powers of the distance below -3/4 are

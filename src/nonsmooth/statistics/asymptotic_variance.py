@@ -146,24 +146,26 @@ def limit_variance(scene: Scene, seed: int | tuple = 0, threads: int | None = No
     -------
     Estimate
     """
-    found = _limit_variance(scene, seed, threads)
+    # From three variables on, sampling is faster than solving, and a percent is enough for W_star.
+    sampled = not box.suits(scene) or scene.dimension > 2
+    found, refusal = _limit_variance(scene, sampled, seed, threads)
 
     def solve():
-        if isinstance(found, ToleranceError):
-            raise found
+        if refusal is not None:
+            raise ToleranceError(refusal, found)
         return found
 
-    return answered(solve, lambda estimate: estimate, tol_given=False)
+    return answered(solve, lambda estimate: estimate, tol_given=not (sampled or scene.is_line))
 
 
 @lru_cache(maxsize=16)  # formulas and the constants that correct them ask for the same
-def _limit_variance(scene, seed, threads):
-    """Return gamma^2, or what tells that it is not as accurate as it should be."""
-    # From three variables on, sampling is faster than solving, and a percent is enough for W_star.
-    sampled = not box.suits(scene) or scene.dimension > 2
-    method = "monte_carlo" if sampled else "deterministic"
-    accuracy = MONTE_CARLO.tolerance if sampled else None if scene.is_line else 2e-3
+def _limit_variance(scene, sampled, seed, threads):
+    """Return gamma^2, and what tells that it is not as accurate as it should be."""
+    if sampled:
+        method, accuracy = "monte_carlo", MONTE_CARLO.tolerance
+    else:
+        method, accuracy = "deterministic", tuning.GAMMA2.tolerance[0] if scene.is_line else 2e-3
     try:
-        return asymptotic_variance(scene, accuracy, method, seed, threads)
+        return asymptotic_variance(scene, accuracy, method, seed, threads), None
     except ToleranceError as refused:
-        return refused.with_traceback(None)
+        return refused.result, str(refused)

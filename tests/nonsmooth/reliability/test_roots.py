@@ -98,6 +98,26 @@ def test_limits_hold_where_W_rises_within_a_spread(spread, wrong, guessed):
         assert ends[0] <= target <= ends[1]
 
 
+@pytest.mark.parametrize("spread", [1e-6, 1e-4, 1e-2])
+@pytest.mark.parametrize("wrong", [-1.0, 0.9])
+@pytest.mark.parametrize("guessed", [1.0, 10.0])
+def test_limits_hold_where_W_falls_within_a_spread(spread, wrong, guessed):
+    """Int g is normal about a mean way, and thresholds are asked for."""
+    rng = np.random.default_rng(12)
+    for target in (1e-6, 1e-3, 0.02, 0.3, 0.5, 0.9, 0.98, 0.999):
+        mean = rng.uniform(0.5, 2.0)
+        error = 10 ** rng.uniform(-10, -2) * min(target, 1 - target)
+
+        def shown(x, mean=mean, error=error):
+            W = np.clip(stats.norm.cdf((mean - np.asarray(x)) / spread) + wrong * error, 0, 1)
+            return Values(W, np.full(len(x), error), W - error, W + error)
+
+        guess = rng.uniform(0.5, 2) * mean, guessed
+        root = solved_root(shown, REFERENCE[FALLING], target, guess, FALLING)
+        ends = stats.norm.cdf((mean - np.array([root.lower, root.upper])) / spread)
+        assert ends[1] <= target <= ends[0]
+
+
 @pytest.mark.parametrize("sense", [RISING, FALLING])
 @pytest.mark.parametrize("relative", [1e-6, 1e-3])
 @pytest.mark.parametrize(("warp", "most"), [(straight, 2), (warped, 4)])

@@ -170,6 +170,11 @@ def test_paths_answer_for_a_noise_of_another_kind():
         assert abs(found.value - exact.value) <= 4.5 * found.error + exact.error
     moments = ns.variance(ns.Scene("friction", Filtered(), n=100), [1.0], 0.1)
     assert moments.attrs["method"] == "monte_carlo"
+    held = ns.Scene("obstacle", Filtered(), n=10, potential="x**2/2", observable="x")
+    length = ns.extrapolation_length(held)
+    assert 0 < length.error < length.value
+    with pytest.raises(SceneError, match="give points"):
+        ns.invariant_density(held)
 
 
 def test_wells_under_a_noise_of_another_kind():

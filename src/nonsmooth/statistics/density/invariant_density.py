@@ -16,7 +16,7 @@ from nonsmooth.checks import (
 )
 from nonsmooth.errors import SceneError, ToleranceError, answered, quoted
 from nonsmooth.grids import tensor_grid
-from nonsmooth.grids.mesh.box import half_widths, suits
+from nonsmooth.grids.mesh.box import half_widths, is_known, suits
 from nonsmooth.results import dataset
 from nonsmooth.scenes.scene import Scene, require_random
 from nonsmooth.scenes.symbols import TITLES, x
@@ -161,10 +161,15 @@ def _equidistant(ends):
 
 def _support(scene, accuracy):
     """Return half widths of a box for points; at n = inf a displacement ends at the walls."""
+    if not is_known(scene):
+        raise SceneError(
+            f"the invariant density of {scene.noise.title} is not known, so that no points can be "
+            "chosen; give points of every variable"
+        )
     limit = math.isinf(scene.n)
     soft = scene.with_n(tuning.SAMPLED_DENSITY.soft) if limit else scene
     try:
-        grid = _grid(soft, accuracy, None) if suits(scene) else None
+        grid = _grid(soft, accuracy, None) if suits(soft) else None
         depth = tensor_grid.depth_for(accuracy)
         ends = half_widths(soft, depth) if grid is None else grid.ends
     except SceneError as unknown:

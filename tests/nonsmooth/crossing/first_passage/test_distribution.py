@@ -60,6 +60,12 @@ def test_neighbouring_degrees_do_not_agree_by_chance(start, horizon, exact):
     assert abs(found.probability[0] - exact) <= found.probability_error[0] + rounded
 
 
+def test_ways_that_noise_does_not_change():
+    """With g = sign(y) int g is the time until y is 0, which takes ln 6 without noise."""
+    found = deterministic(far(5.0, observable="sign(y)"), 0.2, [0.1, 0.3, 1.0])
+    assert found["probability"].values.tolist() == [0.0, 1.0, 1.0]
+
+
 @pytest.mark.slow
 def test_monte_carlo_from_afar():
     """The wall is next to where the flight ends; 4.5 standard errors: false alarm 7e-6."""
