@@ -151,6 +151,20 @@ def test_a_noise_of_another_kind_is_simulated():
 
 
 @pytest.mark.slow
+def test_functions_of_a_noise_of_another_kind():
+    """The filters leave the white noise's intensity, 1, to slow motions; E eta^2 is 1/4.
+
+    Errors hold 4.5 fold; false alarms 7e-6 each.
+    """
+    scene = ns.Scene("friction", Filtered(), observable="eta")
+    for found, exact in (
+        (ns.asymptotic_variance(scene), 1.0),
+        (ns.mean(scene.with_observable("eta**2")), 0.25),
+    ):
+        assert abs(found.value - exact) <= 4.5 * found.error
+
+
+@pytest.mark.slow
 def test_paths_answer_for_a_noise_of_another_kind():
     """Solvers know another noise of the same law, eta'' + 2 eta' + eta = dW/dt.
 
