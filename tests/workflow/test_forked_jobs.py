@@ -2,6 +2,7 @@
 
 import signal
 import subprocess
+import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -114,3 +115,19 @@ def test_a_server_that_is_gone_runs_nothing(run, tmp_path):
         other.process.kill()
         other.process.wait()
         assert not other.run(str(tmp_path / "script.py"), {})
+
+
+def test_kernels_are_compiled_as_in_other_processes(run, tmp_path):
+    """Numba keeps machine code by what it may use of the processor; else all would be compiled."""
+    text = (
+        "from pathlib import Path\n"
+        "import nonsmooth.paths.time_loop\n"
+        "from numba.core.registry import cpu_target\n"
+        "may_use = cpu_target.target_context.codegen().magic_tuple()\n"
+        "Path(__file__).with_suffix('.features').write_text(repr(may_use))\n"
+    )
+    run(text, name="served.py")
+    (tmp_path / "alone.py").write_text(text)
+    subprocess.run([sys.executable, tmp_path / "alone.py"], check=True)
+    served, alone = (tmp_path / f"{name}.features" for name in ("served", "alone"))
+    assert served.read_text() == alone.read_text()

@@ -54,19 +54,21 @@ def _cache_folder() -> str:
 _CACHE = _cache_folder()
 
 
-def _features() -> str | None:
+def features() -> str | None:
     """Return what code may use of the processor, or nothing where the default is right.
 
-    That of the environment variable NUMBA_CPU_FEATURES comes first.
+    That of the environment variable NUMBA_CPU_FEATURES comes first. Numba keeps to what it knows
+    when a process compiles for the first time; machine code that is cached for other features is
+    compiled again. So who compiles before the kernels are imported sets that variable to this.
     """
     wanted: Any = numba.config
     if wanted.CPU_FEATURES is not None:
         return str(wanted.CPU_FEATURES)
-    features = get_host_cpu_features()
-    return f"{features},-prefer-256-bit" if "+avx512f" in features.split(",") else None
+    of_host = get_host_cpu_features()
+    return f"{of_host},-prefer-256-bit" if "+avx512f" in of_host.split(",") else None
 
 
-_FEATURES = _features()
+_FEATURES = features()
 
 
 class ByPackage(UserProvidedCacheLocator):
