@@ -4,6 +4,7 @@ A scene becomes a first-passage problem: a `LineProblem` for one state variable,
 for two. It is solved on finer and finer levels until two of them agree.
 """
 
+import math
 from contextlib import suppress
 from functools import cache, cached_property, partial
 
@@ -195,19 +196,19 @@ class Together:
 def _one_in_plane(together, row, tol):
     """Solve for two state variables: some early times by steps, the others by contours.
 
-    Where contours miss the tolerance, steps are tried, and contours once more for the times that
-    are left.
+    Where contours miss the tolerance, steps are tried, before contours on very fine grids, and
+    contours once more for the times that are left.
     """
     times = together.times
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
     advice = "use method='monte_carlo'"
     reasons = [f"the solution is not finite; {advice}"]
 
-    def solve(here, solver, parts=None, at=None):
+    def solve(here, solver, parts=None, at=None, most=math.inf):
         """Solve at some of the times; keep what has a smaller error than what is known.
 
         `parts` are those of contours unless given; `at` has the times of all intervals, if more
-        than those of this one.
+        than those of this one; `most` is how often errors are measured.
         """
         if not here.any():
             return
@@ -215,7 +216,7 @@ def _one_in_plane(together, row, tol):
         problem = together.problem(row, times[at])
         try:
             refined = parts or problem.resolutions
-            found, stated = _part_by_part(problem, times[at], refined, solver, tol)
+            found, stated = _part_by_part(problem, times[at], refined, solver, tol, most)
         except UnstableError as unstable:
             reasons.append(f"{unstable}; {advice}")
             return
@@ -229,20 +230,25 @@ def _one_in_plane(together, row, tol):
     whole = together.problem(row, times)
     early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
     by_steps = stepped, tuning.STEPPED_PARTS
+    by_contours = partial(solve, ~early, together.inverted, at=together.later)
     solve(early, *by_steps)
-    solve(~early, together.inverted, at=together.later)
+    steps_may_do = not (late.any() or np.any(error[:, early] > tol))
+    by_contours(most=tuning.EACH_PART.tried if steps_may_do else math.inf)
     solve(early & np.isinf(error[0]), inverted)  # they are stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
         solve(missed & ~late, *by_steps)
-        if np.sum(missed & late) < np.sum(~early):  # without the times that are worst
+        missed = np.any(error > tol, axis=0)
+        if steps_may_do and missed.any():
+            by_contours()
+        elif np.sum(missed & late) < np.sum(~early):  # without the times that are worst
             solve(missed & late, inverted)
     if np.isinf(error).any():
         raise ToleranceError(reasons[-1])
     return _answer(whole, times, solution, error, tol)
 
 
-def _part_by_part(problem, times, parts, solver, tol):
+def _part_by_part(problem, times, parts, solver, tol, most):
     """Refine each part of the resolution by itself; return the solution and its error."""
 
     def stated(found):
@@ -251,7 +257,7 @@ def _part_by_part(problem, times, parts, solver, tol):
         return solution, _with_floors(problem, times, solution, change)
 
     found = refine_each_part(
-        parts, solver(problem, times), lambda found: np.all(stated(found)[1] <= tol), tol
+        parts, solver(problem, times), lambda found: np.all(stated(found)[1] <= tol), tol, most
     )
     return stated(found)
 

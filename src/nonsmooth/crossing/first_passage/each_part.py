@@ -10,6 +10,7 @@ changed before, if that is known and less. The parts with the largest errors are
 small ones are measured again in the end if one is extrapolated: long steps hide what a grid misses.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -44,6 +45,7 @@ def refine_each_part(
     solve: Callable[[tuple[int, ...]], np.ndarray],
     met: Callable[[Found], bool],
     tol: float,
+    most: float = math.inf,
 ) -> Found:
     """Refine the parts until the error is met or nothing finer is left.
 
@@ -56,6 +58,8 @@ def refine_each_part(
         Whether a result is accurate enough.
     tol : float
         Absolute error wanted.
+    most : float
+        How often errors are measured, at most: another method may take less than going on.
 
     Returns
     -------
@@ -79,10 +83,10 @@ def refine_each_part(
             advance(1)
             return found
 
-        return _refined(parts, solution, met, tol)
+        return _refined(parts, solution, met, tol, most)
 
 
-def _refined(parts, solution, met, tol):
+def _refined(parts, solution, met, tol, most):
     """Refine with solutions that are not computed twice."""
     settings = tuning.EACH_PART
     begun = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
@@ -94,7 +98,7 @@ def _refined(parts, solution, met, tol):
     beyond = np.array([part.beyond for part in parts])[:, None, None]
     before, found, changes = None, None, None
     size = further_before = np.inf
-    settled = np.full(len(parts), False)
+    settled, measured = np.full(len(parts), False), 0
     while True:
         try:
             base = solution(at)
@@ -127,6 +131,9 @@ def _refined(parts, solution, met, tol):
         over, size, larger = met(found), sizes.sum(axis=0).max(), size
         if not over and coarser is not None and not size < larger:
             return Found(coarser.value, coarser.change + np.abs(found.value - coarser.value))
+        measured += 1
+        if measured >= most and not over:
+            return found
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
         worst = errors.max(axis=(1, 2))
         small = worst <= settings.settled * tol

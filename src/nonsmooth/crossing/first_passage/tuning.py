@@ -173,6 +173,8 @@ class EachPart:
     # chosen: there is no hope if the changes that are left at the finest resolution, extrapolated
     # from two of them, are so many times the tolerance
     hopeless: float = 10.0
+    # chosen: where steps may do, contours that miss the tolerance give way after so many rounds
+    tried: int = 2
 
 
 @dataclass(frozen=True)
