@@ -16,7 +16,7 @@ from nonsmooth.grids.mesh.edges import (
     resolving,
 )
 from nonsmooth.grids.mesh.hermite import deviation, hermite
-from nonsmooth.grids.mesh.layers import layered_edges, resolves_layer
+from nonsmooth.grids.mesh.layers import is_held, layered_edges, resolves_layer
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
@@ -72,7 +72,7 @@ def axes(
         if layered:
             edges = layered_edges(scene, symbol, end, level)
         else:
-            edges = element_edges(scene, symbol, end, _layers(symbol, levels))
+            edges = element_edges(scene, symbol, end, _layers(scene, symbol, levels, of_density))
         if symbol in wells:
             potential, temperature = wells[symbol]
             edges = resolving(edges, vectorised(potential, (symbol,)), temperature)
@@ -101,9 +101,11 @@ def _wider(edges, margin):
     return np.concatenate([[edges[0] - margin], edges, [edges[-1] + margin]])
 
 
-def _layers(symbol, levels):
+def _layers(scene, symbol, levels, of_density):
     """Return the number of ever smaller elements towards a kink; few with many variables."""
     if len(levels) <= 2:
         return 2 + levels[symbol]
     chosen = tuning.ELEMENTS
+    if of_density and is_held(scene) and symbol == x == scene.mechanics.argument:
+        return chosen.layers_of_yielding
     return chosen.more_layers if symbol in (eta, y) else chosen.few_layers
