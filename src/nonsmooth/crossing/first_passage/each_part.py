@@ -92,13 +92,11 @@ def _refined(parts, solution, met, tol, most):
     begun = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
     at = begun
     # the changes of finer parts are added: what remains is the change of their changes
-    finer = np.array([part.step > 0 for part in parts])
-    counted = np.array([part.counted for part in parts])[:, None, None]
-    falls = np.array([part.falls for part in parts])[:, None, None]
-    beyond = np.array([part.beyond for part in parts])[:, None, None]
+    finer, settled = np.array([part.step > 0 for part in parts]), np.full(len(parts), False)
+    rows = [(part.counted, part.falls, part.beyond) for part in parts]
+    counted, falls, beyond = np.transpose(rows)[:, :, None, None]
     before, found, changes = None, None, None
     size = further_before = np.inf
-    settled, measured = np.full(len(parts), False), 0
     while True:
         try:
             base = solution(at)
@@ -128,17 +126,16 @@ def _refined(parts, solution, met, tol, most):
         errors = further_terms(rates)[:, None, None] * sizes
         value = base + extrapolated[finer].sum(axis=0)
         coarser, found = found, Found(value, errors.sum(axis=0))
-        over, size, larger = met(found), sizes.sum(axis=0).max(), size
+        over, size, larger, most = met(found), sizes.sum(axis=0).max(), size, most - 1
         if not over and coarser is not None and not size < larger:
             return Found(coarser.value, coarser.change + np.abs(found.value - coarser.value))
-        measured += 1
-        if measured >= most and not over:
-            return found
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
         worst = errors.max(axis=(1, 2))
         small = worst <= settings.settled * tol
         chosen = _to_refine(np.where((left > 0) & ~small, worst, 0.0), errors, falls, tol)
         hopeless = _least(further, rates, falls, left) > settings.hopeless * tol
+        if most <= 0 and not over:
+            return found
         if over or hopeless or not chosen.any():
             if not (settled.any() and beyond.any()):
                 return found

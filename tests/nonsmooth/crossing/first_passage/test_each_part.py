@@ -128,6 +128,21 @@ class TestRefineEachPart:
         )
         assert found.change.max() == pytest.approx(3e-3)
 
+    @pytest.mark.parametrize("most", [1, 2, 3])
+    def test_ends_where_another_method_may_take_less(self, most):
+        """Errors are measured so many times, and what is known comes back with its own."""
+        asked = []
+
+        def solve(at):
+            asked.append(at[0])
+            return np.array([[0.5 ** at[0]], [0.0]])
+
+        found = refine_each_part(
+            (Part(0, 12, 1),), solve, lambda found: found.change.max() <= 1e-9, 1e-9, most
+        )
+        assert max(asked) == most  # the change to the next one is the error
+        assert abs(found.value[0, 0]) <= found.change[0, 0]
+
     @pytest.mark.parametrize(("tol", "coarsest"), [(1e-2, 0), (1e-4, 1)])
     def test_a_loose_tolerance_begins_coarser(self, tol, coarsest):
         """Nothing below the resolution before it is solved."""
