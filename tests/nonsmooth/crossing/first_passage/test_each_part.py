@@ -135,7 +135,7 @@ class TestRefineEachPart:
 
         def solve(at):
             asked.append(at[0])
-            return np.array([[0.5 ** at[0]], [0.0]])
+            return np.array([[0.1 ** at[0]], [0.0]])
 
         found = refine_each_part(
             (Part(0, 12, 1),), solve, lambda found: found.change.max() <= 1e-9, 1e-9, most
