@@ -337,11 +337,17 @@ class _Question:
         sampled = self._is_sampled() or (not named and default_tolerance(self._scene) is None)
         found, counted = None, np.inf
         tolerances = [self.tolerance(target) for target in targets]
+        missed = dict.fromkeys(range(len(targets)), True)
 
         def solved(wanted):
             known = {}
+            missed.update(dict.fromkeys(wanted, True))
             for tol in dict.fromkeys(tolerances[k] for k in wanted):
                 known |= together({k: x for k, x in wanted.items() if tolerances[k] == tol}, tol)
+            # a root rests on the nearest value, not on others that miss the tolerance
+            for k, values in known.items():
+                nearest = np.argmin(np.abs(values.probability - targets[k]))
+                missed[k] = tolerances[k] is None or values.error[nearest] > tolerances[k]
             return known
 
         try:
@@ -359,10 +365,11 @@ class _Question:
                 raise
             self._refusal, self.attributes = None, {}
             counted = tuning.COUNTED
+            missed.update(dict.fromkeys(missed, True))
         if found is None:
             self._given["method"] = SAMPLED
             found = self._counted(curves, targets, guesses, sense, counted)
-        if self._refusal is not None:
+        if self._refusal is not None and any(missed.values()):
             raise ToleranceError(self._refusal, found)
         return found
 

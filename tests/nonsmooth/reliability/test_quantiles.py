@@ -142,6 +142,32 @@ def test_a_tolerance_out_of_reach_is_refused_with_the_best_root():
     assert found["lower"] < found["threshold"] < found["upper"]
 
 
+@pytest.mark.parametrize(("spoilt", "refused"), [("farthest", False), ("nearest", True)])
+def test_a_value_that_a_root_does_not_rest_on_may_miss_the_tolerance(monkeypatch, spoilt, refused):
+    """Three times are asked for at once, of which the nearest to the root tells it."""
+    target, solve = 0.5, quantiles.crossing_probability
+
+    def worse(*question, **options):
+        found = solve(*question, **options).copy(deep=True)
+        far = np.abs(found["probability"].values - target)
+        if spoilt == "farthest" and far.size == 1:
+            return found
+        place = np.unravel_index(far.argmax() if spoilt == "farthest" else far.argmin(), far.shape)
+        for name, change in {"probability_error": 1e-3, "lower": -1e-3, "upper": 1e-3}.items():
+            found[name].values[place] += change
+        raise ToleranceError("one value is above tol", found)
+
+    asked = {"method": "deterministic", "tol": 1e-4}
+    exact = ns.failure_time(FRICTION, 0.6, target, **asked).squeeze()
+    monkeypatch.setattr(quantiles, "crossing_probability", worse)
+    if refused:
+        with pytest.raises(ToleranceError, match="one value"):
+            ns.failure_time(FRICTION, 0.6, target, **asked)
+        return
+    found = ns.failure_time(FRICTION, 0.6, target, **asked).squeeze()
+    assert abs(found["time"] - exact["time"]) <= found["time_error"] + exact["time_error"]
+
+
 @pytest.mark.slow
 def test_times_of_near_thresholds():
     """Before damping matters int g scales like t^(3/2), and times like b^(2/3)."""
