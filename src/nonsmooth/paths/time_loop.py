@@ -15,7 +15,7 @@ import numpy as np
 from numba.extending import intrinsic, overload
 
 from nonsmooth.paths import tuning
-from nonsmooth.paths.kernels.compilation import announced, inlined, kernel
+from nonsmooth.paths.kernels.compilation import announced, inlined, kernel, merged
 from nonsmooth.paths.kernels.panel import (
     BASE,
     BEFORE,
@@ -171,7 +171,7 @@ def _march(s, panel, lanes, first, last, steps, lower, upper, sums):
     return lanes
 
 
-@inlined
+@merged
 def _advance(s, words, data, total, lanes, first, last, steps, lower, upper):
     normal = 2
     for k in range(first, last):
@@ -341,7 +341,7 @@ def _march_pair(
             _add_changes(total, other_total, lanes, sums[interval])
 
 
-@inlined
+@merged
 def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper, began, passage):
     words, data, total, joined, other_total = arrays
     for k in range(first, last):  # counts the fine steps
@@ -362,7 +362,7 @@ def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper,
             flush(joined, other_total, lanes)
 
 
-@inlined
+@merged
 def flow_of_pair(fine, coarse, data, joined, k, steps, lanes):
     """Let two panels flow for what is due at the k-th fine step; at the end int g is completed.
 
