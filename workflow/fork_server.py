@@ -1,8 +1,8 @@
 """A process that imports the libraries of the jobs once, and forks a process for each of them.
 
-Most jobs are shorter than their imports. `forked_jobs` starts ``python -P fork_server.py N``, N the
-number of a socket, and asks it to run scripts. Modules of this repository are not imported before
-the fork: they may be edited during a run.
+Most jobs are shorter than their imports. `forked_jobs` starts ``python -P fork_server.py N F``, N
+the number of a socket and F what kernels may use of the processor, and asks it to run scripts.
+Modules of this repository are not imported before the fork: they may be edited during a run.
 """
 
 import contextlib
@@ -39,8 +39,12 @@ LIBRARIES = (
 LONGEST = 2**16  # bytes of a request
 
 
-def prepare() -> None:
-    """Import what jobs import, and what numba imports when it compiles for the first time."""
+def prepare(features: str) -> None:
+    """Import what jobs import, and what numba imports when it compiles for the first time.
+
+    Numba keeps to the features of the processor that it is told before. With others, jobs would
+    compile all kernels again.
+    """
     for library in LIBRARIES:
         with contextlib.suppress(ImportError):  # a job that needs it says so
             importlib.import_module(library)
@@ -48,6 +52,8 @@ def prepare() -> None:
         import numba
         import numpy as np
 
+        if features:
+            numba.config.CPU_FEATURES = features
         numba.njit(lambda values: np.exp(values).sum())(np.ones(1))
     gc.collect()
     gc.freeze()  # what is there stays: no job looks through it again
@@ -94,7 +100,7 @@ def serve(requests: socket.socket) -> dict:
 
 if __name__ == "__main__":
     channel = socket.socket(fileno=int(sys.argv[1]))
-    prepare()
+    prepare(sys.argv[2])
     task = serve(channel)
     os.environ.update(task["environment"])
     sys.argv[:] = [task["script"]]

@@ -20,11 +20,8 @@ from typing import Any
 from snakemake.benchmark import benchmarked
 from snakemake.script import PythonScript
 
-from nonsmooth.paths.kernels.compilation import features
-
 SERVER = Path(__file__).with_name("fork_server.py")
 _ONE_THREAD = ("GOTO", "MKL", "OMP", "OPENBLAS")  # as snakemake limits libraries in its jobs
-_FEATURES = "NUMBA_CPU_FEATURES"  # which numba reads when it compiles first, here in the server
 _TEMPORARY = ("TMPDIR", "TMP", "TEMPDIR", "TEMP")
 
 
@@ -37,17 +34,17 @@ class ForkServer:
     """
 
     def __init__(self) -> None:
+        # it takes numba, which is not needed where no script is forked
+        from nonsmooth.paths.kernels.compilation import features
+
         self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._lock, self._ready = Lock(), False
-        alike = {f"{library}_NUM_THREADS": "1" for library in _ONE_THREAD}
-        if of_kernels := features():
-            alike[_FEATURES] = of_kernels
         with theirs:
             self.process = subprocess.Popen(
-                [sys.executable, "-P", SERVER, str(theirs.fileno())],
+                [sys.executable, "-P", SERVER, str(theirs.fileno()), features() or ""],
                 stdin=subprocess.DEVNULL,
                 pass_fds=[theirs.fileno()],
-                env=os.environ | alike,
+                env=os.environ | {f"{library}_NUM_THREADS": "1" for library in _ONE_THREAD},
             )
 
     def __enter__(self) -> "ForkServer":

@@ -338,16 +338,22 @@ class _Question:
         found, counted = None, np.inf
         tolerances = [self.tolerance(target) for target in targets]
         missed = dict.fromkeys(range(len(targets)), True)
+        nearest: dict[int, tuple[float, float]] = {}
 
         def solved(wanted):
             known = {}
             missed.update(dict.fromkeys(wanted, True))
             for tol in dict.fromkeys(tolerances[k] for k in wanted):
                 known |= together({k: x for k, x in wanted.items() if tolerances[k] == tol}, tol)
-            # a root rests on the nearest value, not on others that miss the tolerance
+            # a root rests on the nearest value of all, not on others that miss the tolerance
             for k, values in known.items():
-                nearest = np.argmin(np.abs(values.probability - targets[k]))
-                missed[k] = tolerances[k] is None or values.error[nearest] > tolerances[k]
+                wanted_at = equivalent(reference, targets[k], sense)
+                ways = [
+                    abs(equivalent(reference, W, sense) - wanted_at) for W in values.probability
+                ]
+                both = zip(ways, values.error.tolist(), strict=True)
+                nearest[k] = min(*both, nearest.get(k, (np.inf, np.inf)))
+                missed[k] = tolerances[k] is None or nearest[k][1] > tolerances[k]
             return known
 
         try:
@@ -365,8 +371,8 @@ class _Question:
                 raise
             self._refusal, self.attributes = None, {}
             counted = tuning.COUNTED
-            missed.update(dict.fromkeys(missed, True))
         if found is None:
+            missed = dict.fromkeys(missed, True)
             self._given["method"] = SAMPLED
             found = self._counted(curves, targets, guesses, sense, counted)
         if self._refusal is not None and any(missed.values()):

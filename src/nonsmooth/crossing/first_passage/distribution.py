@@ -196,8 +196,8 @@ class Together:
 def _one_in_plane(together, row, tol):
     """Solve for two state variables: some early times by steps, the others by contours.
 
-    Where contours miss the tolerance, steps are tried, before contours on very fine grids, and
-    contours once more for the times that are left.
+    Where contours miss the tolerance, steps are tried, and contours once more for the times that
+    are left. If steps may do for all times, they come before contours on very fine grids.
     """
     times = together.times
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
@@ -230,19 +230,17 @@ def _one_in_plane(together, row, tol):
     whole = together.problem(row, times)
     early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
     by_steps = stepped, tuning.STEPPED_PARTS
-    by_contours = partial(solve, ~early, together.inverted, at=together.later)
     solve(early, *by_steps)
     steps_may_do = not (late.any() or np.any(error[:, early] > tol))
-    by_contours(most=tuning.EACH_PART.tried if steps_may_do else math.inf)
+    rounds = tuning.EACH_PART.tried if steps_may_do else math.inf
+    solve(~early, together.inverted, at=together.later, most=rounds)
     solve(early & np.isinf(error[0]), inverted)  # they are stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
         solve(missed & ~late, *by_steps)
         missed = np.any(error > tol, axis=0)
-        if steps_may_do and missed.any():
-            by_contours()
-        elif np.sum(missed & late) < np.sum(~early):  # without the times that are worst
-            solve(missed & late, inverted)
+        if steps_may_do or np.sum(missed & late) < np.sum(~early):  # without those that are worst
+            solve(missed & (late | steps_may_do), inverted)
     if np.isinf(error).any():
         raise ToleranceError(reasons[-1])
     return _answer(whole, times, solution, error, tol)

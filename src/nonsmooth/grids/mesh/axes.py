@@ -16,7 +16,7 @@ from nonsmooth.grids.mesh.edges import (
     resolving,
 )
 from nonsmooth.grids.mesh.hermite import deviation, hermite
-from nonsmooth.grids.mesh.layers import is_held, layered_edges, resolves_layer
+from nonsmooth.grids.mesh.layers import layered_edges, resolves_layer
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, x, y, zeta
@@ -106,6 +106,6 @@ def _layers(scene, symbol, levels, of_density):
     if len(levels) <= 2:
         return 2 + levels[symbol]
     chosen = tuning.ELEMENTS
-    if of_density and is_held(scene) and symbol == x == scene.mechanics.argument:
+    if of_density and symbol == x and scene.mechanics.is_plastic:
         return chosen.layers_of_yielding
     return chosen.more_layers if symbol in (eta, y) else chosen.few_layers

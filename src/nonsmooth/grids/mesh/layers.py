@@ -59,8 +59,9 @@ def misses_layer(scene: Scene, ends: Mapping[Symbol, float], edges: np.ndarray) 
     Returns
     -------
     bool
-        Whether an element next to the kink is wider than those that resolve the layer. What the
-        variable follows is driven by noise, or changes by its half width in a unit of time.
+        Whether an element next to the kink is wider than those that resolve the layer, or all that
+        is beyond the kink, where a displacement yields. What the variable follows is driven by
+        noise, or changes by its half width in a unit of time.
     """
     held = scene.mechanics.argument
     if not is_held(scene) or kinks(scene)[held] >= ends[held]:
@@ -70,6 +71,8 @@ def misses_layer(scene: Scene, ends: Mapping[Symbol, float], edges: np.ndarray) 
         width = _finest(scene, 0)[1]
     else:
         width = tuning.LAYERS.width * ends[followed] / _stiffness(scene) ** 2
+    if scene.mechanics.is_plastic:
+        return ends[held] - kinks(scene)[held] > width
     place = int(np.argmin(np.abs(edges - kinks(scene)[held])))
     return bool(np.max(np.diff(edges[place - 1 : place + 2])) > width)
 

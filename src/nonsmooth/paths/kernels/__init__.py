@@ -10,5 +10,6 @@ several paths at once.
 - `vector_math`: elementary functions that a loop over paths can vectorise
 - `compiled_formulas`: potentials and observables given as formulas
 - `histogram`: cells of values, and counts in them
-- `compilation.kernel`, `compilation.inlined`: how all of these are compiled and cached
+- `compilation.kernel`, `compilation.inlined`, `compilation.merged`: how all of these are compiled
+  and cached
 """

@@ -58,8 +58,8 @@ def features() -> str | None:
     """Return what code may use of the processor, or nothing where the default is right.
 
     That of the environment variable NUMBA_CPU_FEATURES comes first. Numba keeps to what it knows
-    when a process compiles for the first time; machine code that is cached for other features is
-    compiled again. So who compiles before the kernels are imported sets that variable to this.
+    when the first function of a process is decorated; machine code that is cached for other
+    features is compiled again. So who decorates before the kernels are imported tells numba this.
     """
     wanted: Any = numba.config
     if wanted.CPU_FEATURES is not None:
@@ -112,11 +112,11 @@ def inlined(function: Callable) -> Callable:
 
 
 def merged(function: Callable) -> Callable:
-    """Compile a function only as a part of its callers, which saves half of their time.
+    """Compile a function only as a part of its callers, which halves the time of compiling them.
 
     For those that call others that are `inlined`: arithmetic that is merged may not vectorise.
     """
-    return kernel(function, forceinline=True, inline="always")
+    return kernel(function, inline="always")
 
 
 @contextmanager
