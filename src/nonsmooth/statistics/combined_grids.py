@@ -265,6 +265,11 @@ def _on_coarsest(grid, tol, on, allowed):
         change,
         met=lambda _, change: change <= chosen.iteration * tol,
     )
+    if len(refined.solutions) < 3:
+        raise ToleranceError(
+            f"the iteration on the coarsest grid ends at a residual of "
+            f"{refined.solutions[-1][1]:.0e}, too large to tell its error; loosen tol"
+        )
     # smaller residuals changed so little that the one before is good enough
     value, accuracy = refined.solutions[-3]
     return value, accuracy, max(2 * refined.error, accuracy)
