@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,8 +33,9 @@ class Grid:
         Maps symbols to resolution levels, see `mesh.axes.axes`.
     margin : float
         Width of the elements that are added outside the box, see `mesh.axes.axes`.
-    shift : float
-        The shift of `AlternatingSolver`, if this is used.
+    shift, adjoint_shift : float
+        The shifts of `AlternatingSolver`, if this is used, for the Poisson equation and for the
+        invariant measure.
     of_density : bool
         Whether densities are solved for, see `mesh.axes.axes`.
     """
@@ -41,7 +43,8 @@ class Grid:
     ends: Mapping[Symbol, float]
     levels: Mapping[Symbol, int]
     margin: float = 0.0
-    shift: float = 8.0
+    shift: float = tuning.ALTERNATING_DIRECTIONS.shift
+    adjoint_shift: float = tuning.ALTERNATING_DIRECTIONS.shift
     of_density: bool = False
 
     def raised(self, symbol: Symbol) -> "Grid":
@@ -86,20 +89,56 @@ def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], PoissonSolver]
 
 def direct_solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], DirectSolver]:
     """Discretise a scene with one or two variables, as `solver` does."""
-    axes, mirrored = _discretised(scene, grid)
-    return axes, DirectSolver(scene, axes, mirrored)
+    axes = _axes(scene, grid)
+    return axes, DirectSolver(scene, axes, scene.is_odd() and _has_halves(axes))
 
 
 def _alternating(scene, grid):
-    axes, mirrored = _discretised(scene, grid)
+    axes = _axes(scene, grid)
+    mirrored = scene.is_odd() and _has_halves(axes)
     return axes, AlternatingSolver(scene, axes, mirrored, grid.shift)
 
 
-def _discretised(scene, grid):
-    """Return the axes, and whether half of the grid is enough: no node is its own mirror image."""
-    axes = axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
-    nodes = math.prod(len(axis.nodes) for axis in axes.values())
-    return axes, scene.is_odd() and nodes % 2 == 0
+def invariant_measure(
+    scene: Scene, grid: Grid, accuracy: float
+) -> tuple[dict[Symbol, Axis], np.ndarray]:
+    """Solve for the invariant measure, which is even if the drift is odd, whatever g is.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a finite n.
+    grid : Grid
+    accuracy : float
+        Residual of an iterative solver; a direct one ignores it.
+
+    Returns
+    -------
+    axes : dict
+        Maps symbols to `Axis`.
+    masses : numpy.ndarray, shape (nodes of the first axis, ...)
+        At the nodes, of sum 1.
+    """
+    axes, solve = _for_measure(scene, grid)
+    masses = solve.stationary(accuracy)
+    return axes, masses.reshape([len(axis.nodes) for axis in axes.values()])
+
+
+def _for_measure(scene, grid):
+    axes = _axes(scene, grid)
+    mirrored = scene.has_odd_drift() and _has_halves(axes)
+    if len(axes) <= 2:
+        return axes, DirectSolver(scene, axes, mirrored)
+    return axes, AlternatingSolver(scene, axes, mirrored, grid.adjoint_shift)
+
+
+def _axes(scene, grid):
+    return axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
+
+
+def _has_halves(axes):
+    """Whether no node is its own mirror image."""
+    return math.prod(len(axis.nodes) for axis in axes.values()) % 2 == 0
 
 
 def depth_for(tol: float) -> float:
@@ -108,7 +147,7 @@ def depth_for(tol: float) -> float:
 
 
 def fitted(scene: Scene, depth: float, level: int) -> Grid:
-    """Choose the box and the shift on coarse grids.
+    """Choose the box and the shifts on coarse grids.
 
     Parameters
     ----------
@@ -126,11 +165,10 @@ def fitted(scene: Scene, depth: float, level: int) -> Grid:
     chosen = tuning.TENSOR_GRIDS
     widest = box.half_widths(scene, depth)
     grid = Grid(widest, dict.fromkeys(variables(scene), level))
+    if len(grid.levels) > 2:
+        grid = replace(grid, adjoint_shift=_adjoint_shift(scene, grid.at_level(0)))
     for _ in range(chosen.fits):
-        axes, solve = solver(scene, grid)
-        masses = solve.stationary(chosen.fit_accuracy).reshape(
-            [len(axis.nodes) for axis in axes.values()]
-        )
+        axes, masses = invariant_measure(scene, grid, chosen.fit_accuracy)
         found = {
             symbol: _extrapolated(
                 axis.nodes,
@@ -146,7 +184,9 @@ def fitted(scene: Scene, depth: float, level: int) -> Grid:
         grid = replace(grid, ends=ends)
         if change < chosen.settled:
             break
-    return _with_best_shift(scene, grid) if len(grid.levels) > 2 else grid
+    if len(grid.levels) > 2:
+        grid = replace(grid, shift=_shift(scene, grid.at_level(0)))
+    return grid
 
 
 def around_start(scene: Scene, ends: Mapping[Symbol, float]) -> dict[Symbol, float]:
@@ -168,24 +208,58 @@ def _extrapolated(nodes, masses, depth):
     return min(width, chosen.widening * nodes[-1])
 
 
-def _with_best_shift(scene, grid):
-    """Try several shifts and keep the one that needs the fewest iterations."""
-    count = {}
-    for shift in tuning.ALTERNATING_DIRECTIONS.shifts:
+def _adjoint_shift(scene, grid):
+    """Choose the shift for the invariant measure."""
+
+    def iterations(shift, most):
+        _, solve = _for_measure(scene, replace(grid, adjoint_shift=shift))
+        solve.most = min(solve.most, most)
+        solve.stationary(tuning.TENSOR_GRIDS.fit_accuracy)
+        return solve.iterations
+
+    return _best_shift(iterations)
+
+
+def _shift(scene, grid):
+    """Choose the shift for the Poisson equation."""
+
+    def iterations(shift, most):
         axes, solve = _alternating(scene, replace(grid, shift=shift))
-        solve.most = min(count.values(), default=solve.most)
+        solve.most = min(solve.most, most)
         g = solve.fold(evaluate(scene.numerical_observable(), axes))
-        try:
-            solve.solve(g, ODD, tuning.ALTERNATING_DIRECTIONS.pilot_accuracy)
-        except ToleranceError:
-            continue
-        count[shift] = solve.iterations
+        solve.solve(g, ODD, tuning.ALTERNATING_DIRECTIONS.pilot_accuracy)
+        return solve.iterations
+
+    return _best_shift(iterations)
+
+
+def _best_shift(iterations):
+    """Return the shift that needs the fewest iterations, going on from one to the next better one.
+
+    `iterations` takes a shift and how many there may be, and raises a `ToleranceError` if there are
+    more.
+    """
+    shifts = tuning.ALTERNATING_DIRECTIONS.shifts
+    count: dict[float, int] = {}
+
+    def try_in_turn(untried):
+        for shift in untried:
+            before = min(count.values(), default=math.inf)
+            with suppress(ToleranceError):
+                count[shift] = iterations(shift, before)
+            if before < math.inf and shift not in count:
+                break
+
+    likeliest = shifts.index(tuning.ALTERNATING_DIRECTIONS.shift)
+    try_in_turn(shifts[likeliest:])
+    if len(count) < 2:  # no larger one is better
+        try_in_turn(reversed(shifts[:likeliest]))
     if not count:
         raise ToleranceError(
             "the iteration converges on no coarse grid, as in scenes that mix slowly; "
             "use Monte Carlo"
         )
-    return replace(grid, shift=min(count, key=count.get))
+    return min(count, key=count.__getitem__)
 
 
 def points(scene: Scene, grid: Grid) -> int:

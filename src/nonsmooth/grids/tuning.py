@@ -91,7 +91,9 @@ class AlternatingDirections:
     krylov: int = 150  # chosen: vectors that GMRES keeps between restarts, as memory allows
     restarts: int = 4  # chosen: of GMRES; scenes that need more mix too slowly for this method
     pilot_accuracy: float = 1e-5  # chosen: residual of the solutions by which shifts are compared
-    shifts: tuple[float, ...] = (12.0, 5.0, 30.0, 2.0)  # chosen: to be tried, the likeliest first
+    # chosen: to be tried, from the likeliest one on
+    shifts: tuple[float, ...] = (2.5, 5.0, 10.0, 20.0, 40.0)
+    shift: float = 5.0  # chosen: the likeliest
 
 
 @dataclass(frozen=True)

@@ -351,13 +351,22 @@ class Scene:
 
         This is read off the structure of the formulas, see `formulas.parity`.
         """
-        return self._odd
+        return self._odd_observable and self._odd_drift
+
+    def has_odd_drift(self) -> bool:
+        """Whether the drift changes sign with the state, so that the invariant measure is even."""
+        return self._odd_drift
 
     @cached_property
-    def _odd(self):
-        odd = [self.observable_expression]
-        odd += [self.drift[s] for s in self.variables if s.name in self.state]
-        return all(f == 0 or parity(f, self.variables) == ODD for f in odd)
+    def _odd_observable(self):
+        return self._all_odd([self.observable_expression])
+
+    @cached_property
+    def _odd_drift(self):
+        return self._all_odd(self.drift[s] for s in self.variables if s.name in self.state)
+
+    def _all_odd(self, expressions):
+        return all(f == 0 or parity(f, self.variables) == ODD for f in expressions)
 
     def numerical_drift(self) -> dict[sympy.Symbol, sympy.Expr]:
         """Return `drift` with the scene's numbers in the place of n and C_b.

@@ -18,7 +18,7 @@ from nonsmooth.estimate import Estimate
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.generator import evaluate
 from nonsmooth.grids.mesh import box
-from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, solver
+from nonsmooth.grids.tensor_grid import Grid, depth_for, fitted, invariant_measure
 from nonsmooth.line import quadrature
 from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
 from nonsmooth.statistics import tuning
@@ -202,7 +202,6 @@ def mean_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     -------
     mean, square : float
     """
-    axes, solve = solver(scene, grid)
+    axes, masses = invariant_measure(scene, grid, accuracy)
     g = evaluate(scene.numerical_observable(), axes)
-    masses = solve.stationary(accuracy)
-    return float(masses @ g), float(masses @ g**2)
+    return float(masses.ravel() @ g), float(masses.ravel() @ g**2)

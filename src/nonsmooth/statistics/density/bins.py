@@ -94,8 +94,7 @@ def _averages_of_closed_form(scene, closed, edges):
 
 
 def _averages_on(scene, grid, edges, accuracy):
-    axes, solve = tensor_grid.solver(scene, grid)
-    masses = solve.stationary(accuracy).reshape([len(axis.nodes) for axis in axes.values()])
+    axes, masses = tensor_grid.invariant_measure(scene, grid, accuracy)
     found, gauss = {}, tuning.INVARIANT_DENSITY.gauss
     for place, (symbol, axis) in enumerate(axes.items()):
         if symbol.name in edges:

@@ -251,9 +251,7 @@ def densities_on(
     dict
         Maps tuples of names to values at the points.
     """
-    axes, solve = tensor_grid.solver(scene, grid)
-    shape = [len(axis.nodes) for axis in axes.values()]
-    masses = solve.stationary(accuracy).reshape(shape)
+    axes, masses = tensor_grid.invariant_measure(scene, grid, accuracy)
     order = [symbol.name for symbol in axes]
     at = {symbol.name: axis.densities(points[symbol.name]) for symbol, axis in axes.items()}
     found = {}
