@@ -59,7 +59,8 @@ def refine_each_part(
     tol : float
         Absolute error wanted.
     most : float
-        How often errors are measured, at most: another method may take less than going on.
+        How often errors are measured, unless they are close to `tol` then: another method may take
+        less than going on.
 
     Returns
     -------
@@ -96,7 +97,8 @@ def _refined(parts, solution, met, tol, most):
     rows = [(part.counted, part.falls, part.beyond) for part in parts]
     counted, falls, beyond = np.transpose(rows)[:, :, None, None]
     before, found, changes = None, None, None
-    size = further_before = np.inf
+    further_before = np.inf
+    best, least_size, worse = None, np.inf, 0
     while True:
         try:
             base = solution(at)
@@ -111,7 +113,7 @@ def _refined(parts, solution, met, tol, most):
                 floor = falls * np.abs(before)
         except (UnstableError, ToleranceError) as refused:
             if found is not None:
-                return found
+                return _with_doubt(best, found)
             if at != begun or not isinstance(refused, UnstableError):
                 raise
             at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
@@ -125,22 +127,25 @@ def _refined(parts, solution, met, tol, most):
         sizes = np.maximum(counted * np.abs(further), floor)
         errors = further_terms(rates)[:, None, None] * sizes
         value = base + extrapolated[finer].sum(axis=0)
-        coarser, found = found, Found(value, errors.sum(axis=0))
-        over, size, larger, most = met(found), sizes.sum(axis=0).max(), size, most - 1
-        if not over and coarser is not None and not size < larger:
-            return Found(coarser.value, coarser.change + np.abs(found.value - coarser.value))
+        found, size = Found(value, errors.sum(axis=0)), sizes.sum(axis=0).max()
+        over, most, worse = met(found), most - 1, worse + 1
+        if size < least_size:
+            best, least_size, worse = found, size, 0
+        if not over and worse > settings.patience:
+            return _with_doubt(best, found)
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
         worst = errors.max(axis=(1, 2))
         small = worst <= settings.settled * tol
         chosen = _to_refine(np.where((left > 0) & ~small, worst, 0.0), errors, falls, tol)
         hopeless = _least(further, rates, falls, left) > settings.hopeless * tol
-        if most <= 0 and not over:
-            return found
+        dear = most <= 0 and np.max(found.change) > settings.close * tol
+        if not over and dear:
+            return _with_doubt(best, found)
         if over or hopeless or not chosen.any():
             if not (settled.any() and beyond.any()):
-                return found
+                return found if over else _with_doubt(best, found)
             # steps that are still long hide what a grid misses
-            settled, size = np.full(len(parts), False), np.inf
+            settled, least_size = np.full(len(parts), False), np.inf
             continue
         # what hardly counts is neither refined nor measured again on the next grid
         settled = small
@@ -148,6 +153,11 @@ def _refined(parts, solution, met, tol, most):
         refined = chosen[:, None, None]
         further_before = np.where(refined, np.abs(further), further_before)
         floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)
+
+
+def _with_doubt(best, last):
+    """Return the best result; what a later, worse one differs from it by is an error, too."""
+    return Found(best.value, best.change + np.abs(last.value - best.value))
 
 
 def _changes_from_coarser(parts, solution, at):

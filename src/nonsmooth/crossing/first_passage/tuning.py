@@ -173,8 +173,13 @@ class EachPart:
     # chosen: there is no hope if the changes that are left at the finest resolution, extrapolated
     # from two of them, are so many times the tolerance
     hopeless: float = 10.0
-    # chosen: where steps may do, contours that miss the tolerance give way after so many rounds
+    # chosen: where steps may do, contours that miss the tolerance give way after so many rounds,
+    # unless their error is below so many times the tolerance
     tried: int = 2
+    close: float = 3.0
+    # chosen: so many times in turn the error may grow: grids that see a layer for the first time
+    # change more than coarser ones
+    patience: int = 1
 
 
 @dataclass(frozen=True)
