@@ -276,7 +276,8 @@ def _elements(scene, symbol, end, level, time):
         largest, finest = (knot / part for part in settings.beside_knot)
         return symmetric(edges, knot - graded(largest, finest, level.ratio)), level.other
     if wall and not observed:  # nothing happens between the walls
-        degree, places = level.between
+        soft = level.soft is not None and end - knot > settings.soft * knot
+        degree, places = level.soft if soft else level.between
         edges = symmetric(edges, knot * np.array(places))
         inside = np.abs(edges[1:] + edges[:-1]) < 2 * knot
         return edges, np.where(inside, degree, level.other)

@@ -72,6 +72,8 @@ class PlaneLevel(NamedTuple):
         Width of the element next to g = 0, relative to the end of the axis.
     dropped : float
         Share of E |g| at nodes that are taken to stand still.
+    soft : tuple of int and tuple of float, optional
+        As `between`, for a wall that paths enter deeply.
     """
 
     driven: int
@@ -81,6 +83,7 @@ class PlaneLevel(NamedTuple):
     ratio: float
     finest: float
     dropped: float
+    soft: tuple[int, tuple[float, ...]] | None = None
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,7 @@ class PlaneOrdinates:
     ratio: float = 3.0  # chosen: ... and ratio of neighbouring ones
     outer: float = 0.4  # chosen: an edge in the outermost element, over the end of the axis
     in_wall: float = 0.3  # chosen: an edge inside a wall, over its depth
+    soft: float = 0.7  # chosen: depth over the wall's place from which on a wall is soft
     # chosen: position of the kink over the largest and over the finest element beside it, if g is
     # the penalty force
     beside_knot: tuple[float, float] = (2.0, 64.0)
