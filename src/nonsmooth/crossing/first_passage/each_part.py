@@ -65,8 +65,8 @@ def refine_each_part(
     Returns
     -------
     Found
-        The last, or the last before a grid is unstable, refused or no longer better, or from which
-        on the tolerance is out of reach.
+        The last if it is met; else the best before a grid is unstable, refused or no longer better,
+        or the tolerance is out of reach, with what the last differs from it by.
 
     Raises
     ------
@@ -87,6 +87,37 @@ def refine_each_part(
         return _refined(parts, solution, met, tol, most)
 
 
+class _Best:
+    """The result whose changes are smallest.
+
+    Attributes
+    ----------
+    worse : int
+        How many in turn were worse since.
+    """
+
+    def __init__(self) -> None:
+        self._found: Found | None = None
+        self._size, self.worse = math.inf, 0
+
+    def take(self, found: Found, size: float) -> None:
+        """Keep a result if its changes, which are of a size, are smaller than those before."""
+        if self._found is None or size < self._size:
+            self._found, self._size, self.worse = found, size, 0
+        else:
+            self.worse += 1
+
+    def forget(self) -> None:
+        """Keep the next result, whatever its changes are."""
+        self._size = math.inf
+
+    def beside(self, last: Found) -> Found:
+        """Return the best result; what a later one differs from it by is an error, too."""
+        assert self._found is not None
+        value = self._found.value
+        return Found(value, self._found.change + np.abs(last.value - value))
+
+
 def _refined(parts, solution, met, tol, most):
     """Refine with solutions that are not computed twice."""
     settings = tuning.EACH_PART
@@ -96,9 +127,8 @@ def _refined(parts, solution, met, tol, most):
     finer, settled = np.array([part.step > 0 for part in parts]), np.full(len(parts), False)
     rows = [(part.counted, part.falls, part.beyond) for part in parts]
     counted, falls, beyond = np.transpose(rows)[:, :, None, None]
-    before, found, changes = None, None, None
+    before, found, changes, best = None, None, None, _Best()
     further_before = np.inf
-    best, least_size, worse = None, np.inf, 0
     while True:
         try:
             base = solution(at)
@@ -113,7 +143,7 @@ def _refined(parts, solution, met, tol, most):
                 floor = falls * np.abs(before)
         except (UnstableError, ToleranceError) as refused:
             if found is not None:
-                return _with_doubt(best, found)
+                return best.beside(found)
             if at != begun or not isinstance(refused, UnstableError):
                 raise
             at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
@@ -127,25 +157,24 @@ def _refined(parts, solution, met, tol, most):
         sizes = np.maximum(counted * np.abs(further), floor)
         errors = further_terms(rates)[:, None, None] * sizes
         value = base + extrapolated[finer].sum(axis=0)
-        found, size = Found(value, errors.sum(axis=0)), sizes.sum(axis=0).max()
-        over, most, worse = met(found), most - 1, worse + 1
-        if size < least_size:
-            best, least_size, worse = found, size, 0
-        if not over and worse > settings.patience:
-            return _with_doubt(best, found)
+        found, most = Found(value, errors.sum(axis=0)), most - 1
+        best.take(found, sizes.sum(axis=0).max())
+        over = met(found)
+        if not over and best.worse > settings.patience:
+            return best.beside(found)
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
         worst = errors.max(axis=(1, 2))
         small = worst <= settings.settled * tol
         chosen = _to_refine(np.where((left > 0) & ~small, worst, 0.0), errors, falls, tol)
         hopeless = _least(further, rates, falls, left) > settings.hopeless * tol
-        dear = most <= 0 and np.max(found.change) > settings.close * tol
-        if not over and dear:
-            return _with_doubt(best, found)
+        if most <= 0 and not over and np.max(found.change) > settings.close * tol:
+            return best.beside(found)
         if over or hopeless or not chosen.any():
             if not (settled.any() and beyond.any()):
-                return found if over else _with_doubt(best, found)
+                return found if over else best.beside(found)
             # steps that are still long hide what a grid misses
-            settled, least_size = np.full(len(parts), False), np.inf
+            settled = np.full(len(parts), False)
+            best.forget()
             continue
         # what hardly counts is neither refined nor measured again on the next grid
         settled = small
@@ -153,11 +182,6 @@ def _refined(parts, solution, met, tol, most):
         refined = chosen[:, None, None]
         further_before = np.where(refined, np.abs(further), further_before)
         floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)
-
-
-def _with_doubt(best, last):
-    """Return the best result; what a later, worse one differs from it by is an error, too."""
-    return Found(best.value, best.change + np.abs(last.value - best.value))
 
 
 def _changes_from_coarser(parts, solution, at):
