@@ -121,14 +121,12 @@ class _Best:
 def _refined(parts, solution, met, tol, most):
     """Refine with solutions that are not computed twice."""
     settings = tuning.EACH_PART
-    begun = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
-    at = begun
+    at = begun = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
     # the changes of finer parts are added: what remains is the change of their changes
     finer, settled = np.array([part.step > 0 for part in parts]), np.full(len(parts), False)
     rows = [(part.counted, part.falls, part.beyond) for part in parts]
     counted, falls, beyond = np.transpose(rows)[:, :, None, None]
-    before, found, changes, best = None, None, None, _Best()
-    further_before = np.inf
+    before, found, changes, further_before, best = None, None, None, np.inf, _Best()
     while True:
         try:
             base = solution(at)
