@@ -214,3 +214,27 @@ class TestRefineEachPart:
 
         refine_each_part((Part(1, 6, 1),), solve, lambda found: len(seen) > 4, 1e-3)
         assert len(seen) == asked
+
+    def test_an_error_may_grow_once(self):
+        """Resolutions that see a layer for the first time change more than those before."""
+        values = [0.0, 5e-5, 11e-5, 11.1e-5, 11.1e-5, 11.1e-5]
+
+        def solve(at):
+            return np.array([[values[at[0]]], [0.0]])
+
+        parts, tol = (Part(1, 4, 1),), 1e-5
+        found = refine_each_part(parts, solve, lambda found: found.change.max() <= tol, tol)
+        assert abs(found.value[0, 0] - values[-1]) <= found.change[0, 0] <= tol
+
+    @pytest.mark.parametrize(("over", "finest"), [(2.8, 3), (3.2, 2)])
+    def test_what_is_close_goes_on(self, over, finest):
+        """It does if the first error is less than three times the tolerance."""
+        asked = []
+
+        def solve(at):
+            asked.append(at[0])
+            return np.array([[0.2 ** at[0]], [0.0]])
+
+        tol = (0.2 - 0.04) / over
+        refine_each_part((Part(1, 9, 1),), solve, lambda found: max(asked) > 2, tol, 1)
+        assert max(asked) == finest

@@ -1,11 +1,14 @@
 """First passage for two state variables on reduced ordinates."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import nonsmooth as ns
+from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
-from nonsmooth.crossing.first_passage.plane import PlaneProblem
+from nonsmooth.crossing.first_passage.plane import PlaneProblem, SharedGrids
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.bases import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC
@@ -29,6 +32,28 @@ def test_starts_in_the_tails(start, message):
         deterministic_crossing(scene, np.array([[-4.0, 4.0]]), np.array([8.0, 20.0]), 1e-3)
     found = ns.crossing_probability(scene, 4.0, [8.0, 20.0], seed=1)
     assert found.attrs["method"] == "monte_carlo"
+
+
+@pytest.mark.slow
+def test_elements_next_to_a_stiff_wall_converge(monkeypatch):
+    """What two resolutions leave of the transform is at most about what they differ by.
+
+    With one element up to the wall they differ by a fiftieth of that.
+    """
+    scene, levels = PLASTIC.with_n(256), (-0.6 * np.sqrt(10), 0.6 * np.sqrt(10))
+
+    def transform(other):
+        grids = SharedGrids(scene, np.array([levels]), np.array([20.0]))
+        return grids.transform((2, other, 1), levels)(0.05)
+
+    coarse, fine = transform(2), transform(3)
+    finer = replace(
+        tuning.PLANE_GRIDS,
+        between=((6, (0.5, 0.85, 0.96, 0.99)),) * 8,
+        other=((5, 8.0, 0.03),) * 8,
+    )
+    monkeypatch.setattr(SharedGrids.grid, "__defaults__", (finer,))
+    assert 0 < abs(transform(2) - fine) < 1.5 * abs(fine - coarse)
 
 
 @pytest.mark.slow
