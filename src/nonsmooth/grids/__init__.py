@@ -11,7 +11,8 @@ more by an iteration. Grids are refined until the result settles.
 - `generator.assemble`, `generator.evaluate`: the generator and formulas on a tensor grid
 - `solver.PoissonSolver`: what a solver must do; `direct_solver.DirectSolver` and
   `alternating_solver.AlternatingSolver` do it
-- `tensor_grid.Grid`, `tensor_grid.fitted`, `tensor_grid.solver`: resolution, box and solver
+- `tensor_grid.Grid`, `tensor_grid.fitted`, `tensor_grid.solver`: resolution, box and solver;
+  `tensor_grid.invariant_measure`
 - `uniform_refinement.refined`: grids of two variables, both refined until two levels agree
 - `combination_technique.Combination`: grids of more variables, each refined as far as it matters
 - `potential_wells.starts`: one starting point in each well that paths rarely leave

@@ -38,7 +38,8 @@ class AlternatingSolver:
     axes : dict
         Maps symbols to axes, see `mesh.axes.axes`.
     mirrored : bool
-        Whether to use that drift and observable are odd. No node may be its own mirror image.
+        Whether to use that the drift is odd, and all functions odd or even. No node may be its own
+        mirror image.
     shift : float
         The number a of the preconditioner: a rate between those at which L and T act.
 

@@ -171,7 +171,8 @@ class DirectSolver:
     axes : dict
         Maps symbols to axes, see `mesh.axes.axes`.
     mirrored : bool
-        Whether to use that drift and observable are odd. No node may be its own mirror image.
+        Whether to use that the drift is odd, and all functions odd or even. No node may be its own
+        mirror image.
     """
 
     def __init__(self, scene: Scene, axes: Mapping[Symbol, Axis], mirrored: bool):

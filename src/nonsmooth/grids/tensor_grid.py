@@ -68,7 +68,9 @@ class Grid:
         return replace(self, margin=tuning.TENSOR_GRIDS.margin)
 
 
-def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], PoissonSolver]:
+def solver(
+    scene: Scene, grid: Grid, odd: bool | None = None
+) -> tuple[dict[Symbol, Axis], PoissonSolver]:
     """Discretise a scene.
 
     Parameters
@@ -76,6 +78,9 @@ def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], PoissonSolver]
     scene : Scene
         With a finite n.
     grid : Grid
+    odd : bool, optional
+        Whether all functions of interest are odd or even in the state, so that half of the grid is
+        enough; unless given, if drift and g are odd.
 
     Returns
     -------
@@ -84,19 +89,13 @@ def solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], PoissonSolver]
     solver : PoissonSolver
         Of the scene's Poisson equation.
     """
-    return direct_solver(scene, grid) if len(grid.levels) <= 2 else _alternating(scene, grid)
+    return _discretised(scene, grid, scene.is_odd() if odd is None else odd, grid.shift)
 
 
 def direct_solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], DirectSolver]:
     """Discretise a scene with one or two variables, as `solver` does."""
-    axes = _axes(scene, grid)
+    axes = axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
     return axes, DirectSolver(scene, axes, scene.is_odd() and _has_halves(axes))
-
-
-def _alternating(scene, grid):
-    axes = _axes(scene, grid)
-    mirrored = scene.is_odd() and _has_halves(axes)
-    return axes, AlternatingSolver(scene, axes, mirrored, grid.shift)
 
 
 def invariant_measure(
@@ -125,15 +124,15 @@ def invariant_measure(
 
 
 def _for_measure(scene, grid):
-    axes = _axes(scene, grid)
-    mirrored = scene.has_odd_drift() and _has_halves(axes)
+    return _discretised(scene, grid, scene.has_odd_drift(), grid.adjoint_shift)
+
+
+def _discretised(scene, grid, odd, shift):
+    axes = axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
+    mirrored = odd and _has_halves(axes)
     if len(axes) <= 2:
         return axes, DirectSolver(scene, axes, mirrored)
-    return axes, AlternatingSolver(scene, axes, mirrored, grid.adjoint_shift)
-
-
-def _axes(scene, grid):
-    return axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
+    return axes, AlternatingSolver(scene, axes, mirrored, shift)
 
 
 def _has_halves(axes):
@@ -224,7 +223,7 @@ def _shift(scene, grid):
     """Choose the shift for the Poisson equation."""
 
     def iterations(shift, most):
-        axes, solve = _alternating(scene, replace(grid, shift=shift))
+        axes, solve = solver(scene, replace(grid, shift=shift))
         solve.most = min(solve.most, most)
         g = solve.fold(evaluate(scene.numerical_observable(), axes))
         solve.solve(g, ODD, tuning.ALTERNATING_DIRECTIONS.pilot_accuracy)
@@ -252,7 +251,7 @@ def _best_shift(iterations):
 
     likeliest = shifts.index(tuning.ALTERNATING_DIRECTIONS.shift)
     try_in_turn(shifts[likeliest:])
-    if len(count) < 2:  # no larger one is better
+    if min(count, key=count.__getitem__, default=shifts[likeliest]) == shifts[likeliest]:
         try_in_turn(reversed(shifts[:likeliest]))
     if not count:
         raise ToleranceError(

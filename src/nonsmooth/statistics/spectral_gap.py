@@ -213,7 +213,7 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     LinAlgError
         If the slowest mode on the grid does not decay, as all modes of a scene do.
     """
-    _, solver = tensor_grid.solver(scene, grid)
+    _, solver = tensor_grid.solver(scene, grid, scene.has_odd_drift())
     slowest = []
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
         if isinstance(solver, AlternatingSolver):

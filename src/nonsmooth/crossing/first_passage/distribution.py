@@ -197,8 +197,8 @@ def _one_in_plane(together, row, tol):
     """Solve for two state variables: some early times by steps, the others by contours.
 
     Where contours miss the tolerance, steps are tried, and contours once more for the times that
-    are left. If steps may do for all times, each of both gives way to the other, before contours go
-    on to very fine grids; on those steps are slow, and not accurate where a wall is stiff.
+    are left. If steps may do for all times, each of both gives way to the other, before they go on
+    to very fine grids. There, steps are not accurate for a displacement that yields.
     """
     times = together.times
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
@@ -242,6 +242,9 @@ def _one_in_plane(together, row, tol):
         missed = np.any(error > tol, axis=0)
         if steps_may_do or np.sum(missed & late) < np.sum(~early):  # without those that are worst
             solve(missed & (late | steps_may_do), inverted)
+            missed = np.any(error > tol, axis=0)
+        if steps_may_do and not whole.scene.mechanics.is_plastic:
+            solve(missed, *by_steps)
     if np.isinf(error).any():
         raise ToleranceError(reasons[-1])
     return _answer(whole, times, solution, error, tol)

@@ -66,7 +66,7 @@ def refine_each_part(
     -------
     Found
         The last if it is met; else the best before a grid is unstable, refused or no longer better,
-        or the tolerance is out of reach, with what the last differs from it by.
+        or the tolerance is out of reach, with what later ones differ from it by.
 
     Raises
     ------
@@ -92,30 +92,31 @@ class _Best:
 
     Attributes
     ----------
-    worse : int
-        How many in turn were worse since.
+    grown : int
+        How often changes were not smaller than those before.
     """
 
     def __init__(self) -> None:
         self._found: Found | None = None
-        self._size, self.worse = math.inf, 0
+        self._least, self._last, self.grown = math.inf, math.inf, 0
+        self._doubt = np.zeros(0)
 
     def take(self, found: Found, size: float) -> None:
-        """Keep a result if its changes, which are of a size, are smaller than those before."""
-        if self._found is None or size < self._size:
-            self._found, self._size, self.worse = found, size, 0
-        else:
-            self.worse += 1
+        """Keep a result if its changes, which are of a size, are smaller than all before."""
+        if self._found is None or size < self._least:
+            self._found, self._least, self._doubt = found, size, np.zeros_like(found.value)
+        self._doubt = np.maximum(self._doubt, np.abs(found.value - self._found.value))
+        self.grown += not size < self._last
+        self._last = size
 
     def forget(self) -> None:
         """Keep the next result, whatever its changes are."""
-        self._size = math.inf
+        self._least = self._last = math.inf
 
-    def beside(self, last: Found) -> Found:
-        """Return the best result; what a later one differs from it by is an error, too."""
+    def found(self) -> Found:
+        """Return the best result; what later ones differ from it by is an error, too."""
         assert self._found is not None
-        value = self._found.value
-        return Found(value, self._found.change + np.abs(last.value - value))
+        return Found(self._found.value, self._found.change + self._doubt)
 
 
 def _refined(parts, solution, met, tol, most):
@@ -141,7 +142,7 @@ def _refined(parts, solution, met, tol, most):
                 floor = falls * np.abs(before)
         except (UnstableError, ToleranceError) as refused:
             if found is not None:
-                return best.beside(found)
+                return best.found()
             if at != begun or not isinstance(refused, UnstableError):
                 raise
             at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
@@ -158,18 +159,18 @@ def _refined(parts, solution, met, tol, most):
         found, most = Found(value, errors.sum(axis=0)), most - 1
         best.take(found, sizes.sum(axis=0).max())
         over = met(found)
-        if not over and best.worse > settings.patience:
-            return best.beside(found)
+        if not over and best.grown > settings.patience:
+            return best.found()
         left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
         worst = errors.max(axis=(1, 2))
         small = worst <= settings.settled * tol
         chosen = _to_refine(np.where((left > 0) & ~small, worst, 0.0), errors, falls, tol)
         hopeless = _least(further, rates, falls, left) > settings.hopeless * tol
         if most <= 0 and not over and np.max(found.change) > settings.close * tol:
-            return best.beside(found)
+            return best.found()
         if over or hopeless or not chosen.any():
             if not (settled.any() and beyond.any()):
-                return found if over else best.beside(found)
+                return found if over else best.found()
             # steps that are still long hide what a grid misses
             settled = np.full(len(parts), False)
             best.forget()

@@ -174,11 +174,11 @@ class EachPart:
     # from two of them, are so many times the tolerance
     hopeless: float = 10.0
     # chosen: where steps may do, contours that miss the tolerance give way after so many rounds,
-    # unless their error is below so many times the tolerance
+    # and steps as well, unless their error is below so many times the tolerance
     tried: int = 2
     close: float = 3.0
-    # chosen: so many times in turn the error may grow: grids that see a layer for the first time
-    # change more than coarser ones
+    # chosen: how often the error may grow: grids that see a layer for the first time change more
+    # than coarser ones
     patience: int = 1
 
 
@@ -346,12 +346,13 @@ BASES = (
     Basis(1e-8, 1e-4, 5e-4),
 )
 TIME_STEPPING = TimeStepping()
+# in one element, early times converge irregularly, and graded elements are no better
+_BETWEEN_EARLY = tuple((degree, (0.5,)) for degree in (4, 5, 6, 7, 8, 9, 10))
 STEPPED_GRIDS = PlaneGrids(
     driven=(4, 5, 6, 8, 9, 10, 12),
     observed=((5, 3.0), (6, 3.0), (7, 3.0), (9, 3.0), (8, 9.0), (10, 9.0), (12, 9.0)),
-    # in one element, early times converge irregularly, and graded elements are no better
-    between=tuple((degree, (0.5,)) for degree in (4, 5, 6, 7, 8, 9, 10)),
-    soft=tuple((degree, (0.5,)) for degree in (4, 5, 6, 7, 8, 9, 10)),
+    between=_BETWEEN_EARLY,
+    soft=_BETWEEN_EARLY,
     other=(*PLANE_GRIDS.other[:5], (7, 8.0, 0.02), (8, 8.0, 0.01)),
     hermite=(10, 16, 24, 36, 54, 80, 110),
     elements=(

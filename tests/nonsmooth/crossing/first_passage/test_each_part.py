@@ -1,8 +1,11 @@
 """Refinement of one part at a time, on solutions whose errors are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.each_part import refine_each_part
 from nonsmooth.crossing.first_passage.problem import Part
 from nonsmooth.errors import ToleranceError
@@ -215,16 +218,31 @@ class TestRefineEachPart:
         refine_each_part((Part(1, 6, 1),), solve, lambda found: len(seen) > 4, 1e-3)
         assert len(seen) == asked
 
-    def test_an_error_may_grow_once(self):
+    @pytest.mark.parametrize(("patience", "met"), [(0, False), (1, True)])
+    def test_an_error_may_grow_once(self, patience, met, monkeypatch):
         """Resolutions that see a layer for the first time change more than those before."""
-        values = [0.0, 5e-5, 11e-5, 11.1e-5, 11.1e-5, 11.1e-5]
+        monkeypatch.setattr(tuning, "EACH_PART", replace(tuning.EACH_PART, patience=patience))
+        values, tol = [0.0, 1e-5, 3e-5, 10e-5, 10.3e-5, 10.35e-5], 1e-5
 
         def solve(at):
             return np.array([[values[at[0]]], [0.0]])
 
-        parts, tol = (Part(1, 4, 1),), 1e-5
+        parts = (Part(1, 4, 1),)
         found = refine_each_part(parts, solve, lambda found: found.change.max() <= tol, tol)
-        assert abs(found.value[0, 0] - values[-1]) <= found.change[0, 0] <= tol
+        assert (found.change[0, 0] <= tol) == met
+        if met:
+            assert abs(found.value[0, 0] - values[-1]) <= found.change[0, 0]
+
+    def test_all_that_was_worse_is_an_error(self):
+        """The best result has what any later one differs from it by, not only the last."""
+        values = [0.0, 2e-5, 3e-5, 20e-5, 4e-5, 20e-5]
+
+        def solve(at):
+            return np.array([[values[at[0]]], [0.0]])
+
+        found = refine_each_part((Part(1, 4, 1),), solve, lambda found: False, 1e-5)
+        assert found.value[0, 0] == pytest.approx(3e-5)
+        assert found.change[0, 0] >= 17e-5
 
     @pytest.mark.parametrize(("over", "finest"), [(2.8, 3), (3.2, 2)])
     def test_what_is_close_goes_on(self, over, finest):
