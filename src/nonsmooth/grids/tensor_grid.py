@@ -94,8 +94,9 @@ def solver(
 
 def direct_solver(scene: Scene, grid: Grid) -> tuple[dict[Symbol, Axis], DirectSolver]:
     """Discretise a scene with one or two variables, as `solver` does."""
-    axes = axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
-    return axes, DirectSolver(scene, axes, scene.is_odd() and _has_halves(axes))
+    axes, found = solver(scene, grid)
+    assert isinstance(found, DirectSolver)
+    return axes, found
 
 
 def invariant_measure(
@@ -129,15 +130,11 @@ def _for_measure(scene, grid):
 
 def _discretised(scene, grid, odd, shift):
     axes = axes_of(scene, grid.ends, grid.levels, grid.margin, grid.of_density)
-    mirrored = odd and _has_halves(axes)
+    # no node is its own mirror image
+    mirrored = odd and math.prod(len(axis.nodes) for axis in axes.values()) % 2 == 0
     if len(axes) <= 2:
         return axes, DirectSolver(scene, axes, mirrored)
     return axes, AlternatingSolver(scene, axes, mirrored, shift)
-
-
-def _has_halves(axes):
-    """Whether no node is its own mirror image."""
-    return math.prod(len(axis.nodes) for axis in axes.values()) % 2 == 0
 
 
 def depth_for(tol: float) -> float:

@@ -204,4 +204,5 @@ def mean_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     """
     axes, masses = invariant_measure(scene, grid, accuracy)
     g = evaluate(scene.numerical_observable(), axes)
-    return float(masses.ravel() @ g), float(masses.ravel() @ g**2)
+    masses = masses.ravel()
+    return float(masses @ g), float(masses @ g**2)

@@ -1,5 +1,7 @@
 """The spectral gap against linear systems and the decay of correlations."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,13 @@ def test_friction_waits_for_the_noise():
     """The gap is the forcing's own rate theta where friction forgets faster."""
     found = ns.spectral_gap(ns.Scene("friction", ns.OrnsteinUhlenbeck(0.3), n=3), tol=1e-4)
     assert abs(found.value - 0.3) <= found.error
+
+
+def test_it_does_not_depend_on_the_observable():
+    """With an odd drift modes are odd or even, whether g is or not."""
+    scene = ns.Scene("obstacle", n=10, potential="x**2/2", observable="x")
+    skewed = replace(scene, observable="x + x**2")
+    assert ns.spectral_gap(skewed).value == ns.spectral_gap(scene).value
 
 
 def test_dry_friction_in_the_limit():
