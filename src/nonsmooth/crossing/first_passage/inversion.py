@@ -235,13 +235,10 @@ class _OnVerticalLines(_Inversion):
 
     def _rise(self, begin, end):
         """Solve windows in which the probability is still small, the last first."""
-        settings, lines = self.problem.settings, tuning.VERTICAL_LINES
-        worst = lines.relative if settings.relative else np.inf
-        negligible = begin
+        settings, negligible = self.problem.settings, begin
         of_rise = _lines_of_rise(self.problem, self.times, self.saddles, begin, end)
-        for here, abscissa, bound in reversed(of_rise):
-            accuracy = max(lines.rising, min(worst, lines.accuracy * self.tol / bound))
-            self._on_line(here, abscissa, accuracy, rising=True)
+        for here, abscissa in reversed(of_rise):
+            self._on_line(here, abscissa, rising=True)
             # if the probability is negligible here, although its bound is not, it is so before
             if (
                 abs(self.found[0, here.start])
@@ -254,37 +251,50 @@ class _OnVerticalLines(_Inversion):
     def _later(self, windows):
         """Solve the window after the rise, on the line that serves its last time."""
         lines, last = tuning.VERTICAL_LINES, self.times[-1]
-        accuracy = max(lines.best, lines.accuracy * self.tol)
         for here, _ in windows:
             steps = np.log(last / self.times[here.stop - 1]) // np.log(lines.ratio)
-            self._on_line(here, lines.ratio**steps / last, accuracy, rising=False)
+            self._on_line(here, lines.ratio**steps / last, rising=False)
 
-    def _on_line(self, here, abscissa, accuracy, rising):
+    def _on_line(self, here, abscissa, rising):
         """Fit F on a line, unless this is not wanted, and invert it."""
         if not self.wanted[here].any():
             return
-        settings, saddles = tuning.VERTICAL_LINES, self.saddles
         turn = self.problem.settings.levels.index(self.level) % 2
         first, last, rarity = self.needs[abscissa if rising else None]
         of_grid = self.level.resolution, np.array([first, last]), rarity
         parts, fronts = self.problem.parts(*of_grid)
         values, inexact = np.zeros(here.stop - here.start), 0.0
         if self.times[here.stop - 1] > fronts.min():
-            begun = saddles.begin(abscissa, settings.negligible * min(accuracy, 1.0))
-            line = vertical_lines.line(parts, abscissa)
+            line = self._line(parts, abscissa)
+            accuracy = self._accuracy(line, here, rising)
+            share, off = tuning.VERTICAL_LINES.negligible * min(accuracy, 1.0), 0.0
             # in the rise F is less than what bases leave out, and the best fits have no room for it
-            if not rising and accuracy > settings.best:
+            if not rising and accuracy > tuning.VERTICAL_LINES.best:
                 parts, off = self.problem.parts_on_line(parts, of_grid, abscissa, accuracy)
-                inexact = settings.inverse * off * line.size * np.exp(abscissa * self.times[here])
-            values = vertical_lines.inverted(
-                parts,
-                line,
-                np.maximum(fronts, begun),
-                accuracy,
-                rising,
-                offset=turn / 2,
-            ).at(self.times[here])
+            begun = np.maximum(fronts, self.saddles.begin(line.abscissa, share))
+            found = vertical_lines.inverted(parts, line, begun, accuracy, rising, offset=turn / 2)
+            values = found.at(self.times[here])
+            off += found.misfit if found.misfit > accuracy else 0.0  # else levels tell
+            growth = line.size * np.exp(line.abscissa * self.times[here])
+            inexact = tuning.VERTICAL_LINES.inverse * off * growth
         self._store(here, values, inexact=inexact)
+
+    def _line(self, parts, abscissa):
+        """Return the line, or the first one to the left of it where F is more than rounded."""
+        line = vertical_lines.line(parts, abscissa)
+        while line.size <= 0 and abscissa * self.times[-1] > 1:
+            abscissa /= tuning.VERTICAL_LINES.ratio
+            line = vertical_lines.line(parts, abscissa)
+        return line
+
+    def _accuracy(self, line, here, rising):
+        """Return how accurate a fit has to be, relative to the size of F."""
+        lines = tuning.VERTICAL_LINES
+        if not rising:
+            return max(lines.best, lines.accuracy * self.tol)
+        worst = lines.relative if self.problem.settings.relative else np.inf
+        bound = line.size * np.exp(line.abscissa * self.times[here.stop - 1])
+        return max(lines.rising, min(worst, lines.accuracy * self.tol / bound))
 
 
 def _begin(problem, saddles):
@@ -298,14 +308,14 @@ def _risen(saddles, begin):
 
 
 def _lines_of_rise(problem, times, saddles, begin, end):
-    """Windows in which the probability is still small, with their lines and bounds of it."""
+    """Windows in which the probability is still small, with the places of their lines."""
     if begin == end:
         return []
-    abscissas, bounds = saddles.on_lines(times, tuning.VERTICAL_LINES.ratio)
+    abscissas = saddles.on_lines(times, tuning.VERTICAL_LINES.ratio)
     turns = np.cumsum(np.diff(abscissas, prepend=abscissas[0]) != 0) + 1
     one_line = np.inf if not problem.settings.relative else 1
     windows = _windows(begin, end, (turns, one_line))
-    return [(here, abscissas[here.stop - 1], bounds[here.stop - 1]) for here in windows]
+    return [(here, abscissas[here.stop - 1]) for here in windows]
 
 
 def _needs(problems, times, saddles):
@@ -317,8 +327,7 @@ def _needs(problems, times, saddles):
     for problem, own in zip(problems, saddles, strict=True):
         begin = _begin(problem, own)
         risen = _risen(own, begin)
-        lines = _lines_of_rise(problem, times, own, begin, risen)
-        windows = [(here, abscissa) for here, abscissa, _ in lines]
+        windows = _lines_of_rise(problem, times, own, begin, risen)
         if risen < len(times):
             windows.append((slice(risen, len(times)), None))
         for here, abscissa in windows:

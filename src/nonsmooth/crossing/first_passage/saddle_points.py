@@ -57,8 +57,8 @@ class SaddlePoints:
         fallen = np.interp(abscissa, z, log_F) - log_F[right]
         return float(np.max((np.log(share) + fallen) / (z[right] - abscissa), initial=0.0))
 
-    def on_lines(self, times: np.ndarray, ratio: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return where on a lattice exp(z t) F(z) is least, and its least values.
+    def on_lines(self, times: np.ndarray, ratio: float) -> np.ndarray:
+        """Return where on a lattice exp(z t) F(z) is least, for each time.
 
         The lattice is that of ratio^k over the last time. Its bounds are little above Chernoff's,
         and one place serves all times between two turns.
@@ -67,8 +67,7 @@ class SaddlePoints:
         places = ratio ** np.arange(1 + max(0.0, np.log(z[-1] * times[-1]) // np.log(ratio)))
         places /= times[-1]
         exponents = np.outer(times, places) + np.interp(np.log(places), np.log(z), log_F)
-        best = np.argmin(exponents, axis=1)
-        return places[best], np.exp(np.min(exponents, axis=1))
+        return places[np.argmin(exponents, axis=1)]
 
 
 def saddle_points(problem: LaplaceProblem, times: np.ndarray) -> SaddlePoints:

@@ -102,7 +102,10 @@ class VerticalLines:
     # 1, above it most of all. From 10 to 10^4 it makes no difference
     unit: float = 100.0
     far: tuple[float, ...] = (2.0, 4.0, 8.0, 30.0, 100.0)  # chosen: heights at which F is 0
-    falls: float = 0.5  # chosen: more samples must make the error at least so much smaller
+    # chosen: more samples must make an error at least so much smaller if it is less than ...
+    falls: float = 0.5
+    rounded: float = 1e-6  # chosen: ... this; larger ones are no rounding, but turns of F
+    closest: float = 1.001  # chosen: ratio of heights between which no sample is added
     most: int = 250  # chosen: number of samples from which no more are added
     terms: int = 100  # chosen: largest number of terms of a fit
     rounding: float = 1e-14  # derived: relative size of singular values that are rounding

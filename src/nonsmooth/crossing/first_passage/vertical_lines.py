@@ -4,11 +4,13 @@ Contours that bend to the left come near poles of F off the real axis, and F gro
 paths arrive together. On a vertical line F is bounded by its value on the real axis. There it is
 sampled at heights in geometric progression and fitted by the algorithm AAA (Nakatsukasa, Sete and
 Trefethen, SIAM J. Sci. Comput. 40 (2018) A1494). The inverse is then a sum of exponentials over the
-poles to the left of the line, for all times. If the fit is good to epsilon on the line Re z = s,
-the inverse at t is good to exp(s t) epsilon, up to a logarithm.
+poles, for all times. If the fit is good to epsilon on the line Re z = s, the inverse at t is good
+to exp(s t) epsilon, up to a logarithm.
 
-F is the sum of parts, one for each exit, which are fitted without factors exp(-z t_0), t_0 being
-the time before which no path arrives: exponentials have no good rational approximation.
+F is the sum of parts, one for each exit, which are fitted without factors exp(-z t_0): exponentials
+have no good rational approximation. Many paths may arrive together at t_0, long after the first
+ones. The poles to the left of the line are those of later times, those to the right of it of
+earlier ones.
 """
 
 import warnings
@@ -26,29 +28,39 @@ Parts = Callable[[complex], np.ndarray]  # the parts of F at a point, shape (m,)
 
 @dataclass(frozen=True)
 class Exponentials:
-    """A function of time: for each part sum_k c_k exp(p_k (t - t_0)), 0 before t_0.
+    """A function of time: for each part sum_k c_k exp(p_k (t - t_0)), of other terms before t_0.
 
     Attributes
     ----------
     delays : numpy.ndarray, shape (m,)
+        Up to which each part is 0.
+    centres : numpy.ndarray, shape (m,)
         t_0 of each part.
-    terms : list of (numpy.ndarray, numpy.ndarray)
+    before, after : list of (numpy.ndarray, numpy.ndarray)
         p_k and log c_k of each part; the c_k themselves may be too large for a number.
     misfit : float
-        Largest error of the fits at the samples, and at zeros far above, relative to the size of F.
+        Largest error of the fits at the samples, and at zeros far above, relative to the size of F;
+        and what a fit to all samples but the last ones was wrong by at these.
     """
 
     delays: np.ndarray
-    terms: list
+    centres: np.ndarray
+    before: list
+    after: list
     misfit: float = 0.0
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """Evaluate the function at times, shape (k,)."""
         total = np.zeros(len(times))
-        for delay, (exponents, logarithms) in zip(self.delays, self.terms, strict=True):
-            begun = times > delay
-            since = times[begun] - delay
-            total[begun] += np.exp(np.outer(since, exponents) + logarithms).sum(axis=1).real
+        for delay, centre, *sides in zip(
+            self.delays, self.centres, self.before, self.after, strict=True
+        ):
+            late = times > centre
+            for here, (exponents, logarithms) in zip(
+                (~late & (times > delay), late), sides, strict=True
+            ):
+                since = times[here] - centre
+                total[here] += np.exp(np.outer(since, exponents) + logarithms).sum(axis=1).real
         return total
 
 
@@ -116,35 +128,46 @@ def inverted(
     """
     abscissa, size = line.abscissa, line.size
     if size <= 0:  # rounding
-        return Exponentials(delays, [(np.zeros(0), np.zeros(0))] * len(delays))
+        nothing = [(np.zeros(0), np.zeros(0))] * len(delays)
+        return Exponentials(delays, delays, nothing, nothing)
 
     def scaled(height):
         z = complex(abscissa, height)
-        values = parts(z) * np.exp(1j * height * delays) / size
+        values = parts(z) / size
         return values * (abscissa / z) if rising else values
 
     with np.errstate(divide="ignore"):
         # above, the phase of exp(-z t_0) is rounded by more than the accuracy
         highest = accuracy / (tuning.VERTICAL_LINES.phase * np.max(delays))
-    sampled = _sampled(scaled, line, accuracy, offset, highest)
-    terms, misfit, unit = [], 0.0, tuning.VERTICAL_LINES.unit * abscissa
-    for (z, values), delay in zip(sampled, delays, strict=True):
-        *found, error = _residues(z, values, accuracy)
+    samples = _until_negligible(scaled, line, accuracy, offset, highest)
+    centres = np.maximum(delays, _delays(scaled, samples, line, accuracy))
+    misfit = _add_where_wrong(scaled, samples, line, accuracy, centres)
+    before, after = [], []
+    for column, centre in zip(_columns(samples, abscissa, centres), centres, strict=True):
+        poles, residues, error = _residues(*column, accuracy)
         misfit = max(misfit, error)
-        poles, residues = (unit * part for part in found)
-        if rising:
-            exponents, coefficients = poles, residues / abscissa
-        else:  # the pole of 1 / z, at which F is minus the sum of the others
-            coefficients = residues / poles
-            exponents = np.append(poles, 0.0)
-            coefficients = np.append(coefficients, -coefficients.sum())
-        with np.errstate(divide="ignore"):  # of coefficients that are 0
-            terms.append((exponents, np.log(coefficients) + np.log(size) + abscissa * delay))
-    return Exponentials(delays, terms, misfit)
+        scale = np.log(size) + abscissa * centre
+        early, late = _in_time(poles, residues, abscissa, rising)
+        before.append((early[0], early[1] + scale))
+        after.append((late[0], late[1] + scale))
+    return Exponentials(delays, centres, before, after, misfit)
 
 
-def _sampled(scaled, line, accuracy, offset, highest):
-    """Sample until F is negligible, and then where fits to the samples so far are wrong."""
+def _in_time(poles, residues, abscissa, rising):
+    """Exponents and logarithms of coefficients, to the right of the line and to the left of it."""
+    unit = tuning.VERTICAL_LINES.unit * abscissa
+    exponents, left = unit * poles, unit * poles.real < abscissa
+    coefficients = unit * residues / (abscissa if rising else exponents)
+    early = exponents[~left], -coefficients[~left]
+    late = exponents[left], coefficients[left]
+    if not rising:  # the pole of 1 / z, at which F is minus the sum of the others
+        late = np.append(late[0], 0.0), np.append(late[1], -coefficients.sum())
+    with np.errstate(divide="ignore"):  # of coefficients that are 0
+        return [(places, np.log(sizes)) for places, sizes in (early, late)]
+
+
+def _until_negligible(scaled, line, accuracy, offset, highest):
+    """Sample upwards until F is negligible: values by their heights."""
     settings, abscissa = tuning.VERTICAL_LINES, line.abscissa
     # heights are on a lattice that transforms of different thresholds share
     place = np.floor(np.log(line.lowest) / np.log(settings.step)) + offset
@@ -153,29 +176,58 @@ def _sampled(scaled, line, accuracy, offset, highest):
         samples[height] = scaled(height)
         rest = rest - 1 if np.all(np.abs(samples[height]) < accuracy) else settings.beyond
         place += 1
-    unsure, worst = list(pairwise(list(samples)[1:])), np.inf
+    return samples
+
+
+def _delays(scaled, samples, line, accuracy):
+    """When the paths arrive, on average, that F is made of where it is half way to negligible.
+
+    That is the change of the phase of F by height, for each part; 0 of a part that is negligible.
+    """
+    heights, values = np.array(list(samples)), np.abs(list(samples.values()))
+    largest, change = np.max(values, axis=0), line.lowest * line.abscissa
+    found = np.zeros(len(largest))
+    for part in np.flatnonzero(largest > accuracy):
+        half_way = np.sqrt(accuracy * largest[part])
+        height = heights[np.flatnonzero(values[:, part] >= half_way)[-1]]
+        samples[height + change] = scaled(height + change)
+        turned = samples[height + change][part] / samples[height][part]
+        found[part] = -np.angle(turned) / change
+    return found
+
+
+def _add_where_wrong(scaled, samples, line, accuracy, centres):
+    """Add samples between others where fits to the samples so far are wrong.
+
+    Returns what the last of these fits was wrong by.
+    """
+    settings, abscissa = tuning.VERTICAL_LINES, line.abscissa
+    unsure, worst = list(pairwise(sorted(samples)[1:])), np.inf
     unit = settings.unit * abscissa
     while unsure and len(samples) < settings.most:
-        columns = _columns(samples, abscissa)
+        columns = _columns(samples, abscissa, centres)
         fits = [_fit(*part, accuracy, settings.shares[0]) for part in columns]
         wrong, errors = [], []
         for low, high in unsure:
             middle = np.sqrt(low * high)
             samples[middle] = scaled(middle)
             found = [fit(complex(abscissa, middle) / unit) if fit else 0.0 for fit in fits]
-            errors.append(np.max(np.abs(found - samples[middle])))
-            if errors[-1] > accuracy:
+            there = samples[middle] * np.exp(1j * middle * centres)
+            errors.append(np.max(np.abs(found - there)))
+            if errors[-1] > accuracy and high > settings.closest * low:
                 wrong += [(low, middle), (middle, high)]
-        if max(errors) > settings.falls * worst:  # this is rounding of F, which no sample mends
+        last, worst = worst, max(errors)
+        if settings.falls * last < worst < settings.rounded:  # no sample mends that F is rounded
             break
-        unsure, worst = wrong, max(errors)
-    return _columns(samples, abscissa)
+        unsure = wrong
+    return worst if np.isfinite(worst) else 0.0
 
 
-def _columns(samples, abscissa):
-    """Places on the line, in units that suit the fits, and values, for each part."""
-    z = (abscissa + 1j * np.array(list(samples))) / (tuning.VERTICAL_LINES.unit * abscissa)
-    return [(z, part) for part in np.array(list(samples.values())).T]
+def _columns(samples, abscissa, centres):
+    """Places on the line, in units that suit the fits, and values without delay, for each part."""
+    heights, values = np.array(list(samples)), np.array(list(samples.values()))
+    z = (abscissa + 1j * heights) / (tuning.VERTICAL_LINES.unit * abscissa)
+    return [(z, part) for part in (values * np.exp(1j * np.outer(heights, centres))).T]
 
 
 def _mirrored(z, values):
@@ -200,11 +252,11 @@ def _fit(z, values, accuracy, share):
 
 
 def _residues(z, values, accuracy):
-    """Poles to the left of the line, residues at them, and the largest error of the fit.
+    """Poles off the line, residues at them, and the largest error of the fit.
 
     The residues are fitted once more, to these poles alone: those of the rational function of a
-    high degree are not accurate far from the line. Where F is as good as rounded, a close fit has
-    poles to the right, too, without which it is worse than a less close one.
+    high degree are not accurate far from the line. Where F is as good as rounded, a less close fit
+    may be the better.
     """
     line, settings = z[0].real, tuning.VERTICAL_LINES
     found, least = (np.zeros(0, complex), np.zeros(0, complex)), float(np.max(np.abs(values)))
@@ -212,9 +264,9 @@ def _residues(z, values, accuracy):
         if least <= accuracy:
             break
         poles = _fit(z, values, accuracy, share).poles()
-        poles = poles[poles.real < line]
+        poles = poles[poles.real != line]
         places, wanted = _mirrored(z, values)
-        distances = line - poles.real
+        distances = np.abs(line - poles.real)
         columns = distances / (places[:, None] - poles)
         strengths = np.linalg.lstsq(columns, wanted, rcond=settings.rounding)[0]
         error = np.max(np.abs(columns @ strengths - wanted))

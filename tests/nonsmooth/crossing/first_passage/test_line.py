@@ -20,6 +20,22 @@ def exact(threshold, horizons, p, scene=FRICTION, tol=1e-7):
     return ns.crossing_probability(scene, threshold, horizons, p, method="deterministic", tol=tol)
 
 
+def by_trapezoids(scene, threshold, time, least=1e-12):
+    """Invert the Laplace transform on a vertical line, on which nothing grows.
+
+    The error is below 1e-9: exp(-24) of periods, rounding of 1e-12 times exp(8) F(8/t), terms below
+    1e-12 of the largest, which is of order 20, unless more of them are left out.
+    """
+    grid = ordinates(scene, 9, time, 12.0, 40.0, distances=(threshold, threshold))
+    step = 2 * np.pi / (3 * time)
+    z, terms = 8 / time + 1j * step / 2, []
+    while not terms or abs(terms[-1]) > least * abs(terms[0]):
+        passage = modes(grid, z).first_passage(-threshold, threshold)
+        terms.append(np.exp(z * time) * passage / z)
+        z += 1j * step
+    return step / np.pi * np.sum(terms).real
+
+
 @pytest.mark.slow
 class TestDeterministic:
     """First passage against published values, Monte Carlo, and itself in the tails."""
@@ -67,21 +83,26 @@ class TestDeterministic:
         assert np.all(gap <= wholes.probability_error + halves.probability_error)
 
     def test_soon_after_the_rise_without_symmetry(self):
-        """Poles off the axis still count; against a vertical line, on which nothing grows.
-
-        Its error, below 1e-9: exp(-24) of periods, rounding of 1e-12 times exp(8) F(8/t), terms
-        below 1e-12 of the largest, which is of order 20.
-        """
+        """Poles off the axis still count."""
         scene = ns.Scene("friction", observable="y + 0.5*sin(y)**2 - 0.0718281158505784")
         found = exact(0.6, [0.5, 1.15, 23.0], 1, scene)
-        time, grid = 1.15, ordinates(scene, 9, 1.15, 12.0, 40.0, distances=(0.6, 0.6))
-        step = 2 * np.pi / (3 * time)
-        z, terms = 8 / time + 1j * step / 2, []
-        while not terms or abs(terms[-1]) > 1e-12 * abs(terms[0]):
-            terms.append(np.exp(z * time) * modes(grid, z).first_passage(-0.6, 0.6) / z)
-            z += 1j * step
-        reference = step / np.pi * np.sum(terms).real
-        assert abs(found.probability[1] - reference) <= found.probability_error[1] + 1e-9
+        gap = abs(found.probability[1] - by_trapezoids(scene, 0.6, 1.15))
+        assert gap <= found.probability_error[1] + 1e-9
+
+    def test_many_paths_arrive_together(self):
+        """Many paths stay near y = 0.5, where g is flat, until they arrive; few come before."""
+        scene = ns.Scene("friction", n=100, observable="y + 0.56*cos(2*y)")
+        found = exact(0.6, [0.5, 0.703, 20.0], 1, scene, tol=1e-4)
+        gap = abs(found.probability[1] - by_trapezoids(scene, 0.6, 0.703, 1e-8))
+        # what is left out, times exp(8) F(8/t)
+        assert gap <= found.probability_error[1] + 1e-8
+
+    def test_a_rounded_transform_is_not_0(self):
+        """On a line for the early times a coarse grid has no digit of F, which is 1e-15 there."""
+        asked = 0.6, [0.301, 0.502, 0.703, 20.0], 1, ns.Scene("friction", n=np.inf)
+        early, usual = (exact(*asked, tol=tol) for tol in (1e-4, 1e-7))
+        gap = np.abs(early.probability - usual.probability)
+        assert np.all(gap <= early.probability_error + usual.probability_error)
 
     def test_reflection(self):
         """-g(-y) crosses the thresholds swapped with the same probability."""

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.special import erfc
+from scipy.special import erfc, ndtr
 
+from nonsmooth.crossing.first_passage.tuning import VERTICAL_LINES
 from nonsmooth.crossing.first_passage.vertical_lines import inverted, line
 
 
@@ -68,8 +69,27 @@ def test_delays_are_exact():
     assert np.max(np.abs(found - exact)) < 2 * bound(accuracy, 1 / 40, 1e8, 40.0)
 
 
+def test_many_may_arrive_long_after_the_first():
+    """A tenth arrives smoothly from 0 on, the others at 1 with a standard deviation of 0.02.
+
+    The transform of the others turns 37 times before it is negligible, at |z| = 230.
+    """
+    times, accuracy, spread, asked = np.linspace(0.05, 3.0, 60), 1e-5, 0.02, []
+
+    def parts(z):
+        asked.append(z)
+        together = np.exp(-z + (spread * z) ** 2 / 2)
+        return np.array([0.9 * together + 0.1 * np.exp(-np.sqrt(z))])
+
+    found = fitted(parts, 1 / 3, np.zeros(1), accuracy, False, 0.0).at(times)
+    exact = 0.9 * ndtr((times - 1) / spread) + 0.1 * erfc(0.5 / np.sqrt(times))
+    assert np.max(np.abs(found - exact)) < bound(accuracy, 1 / 3, 230, 3.0)
+    assert len(asked) < VERTICAL_LINES.most
+
+
 def test_what_is_negligible_is_0():
     """A transform below the accuracy is 0."""
     found = fitted(lambda z: np.array([1.0 / (1 + z), 1e-12]), 0.1, np.zeros(2), 1e-9, False, 0.0)
-    assert len(found.terms[1][0]) <= 1
+    assert len(found.after[1][0]) <= 1
+    assert not len(found.before[1][0])
     assert found.at(np.array([3.0]))[0] == pytest.approx(1 - np.exp(-3.0), abs=1e-8)
