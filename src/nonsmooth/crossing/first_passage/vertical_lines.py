@@ -143,8 +143,8 @@ def inverted(
     centres = np.maximum(delays, _delays(scaled, samples, line, accuracy))
     misfit = _add_where_wrong(scaled, samples, line, accuracy, centres)
     before, after = [], []
-    for column, centre in zip(_columns(samples, abscissa, centres), centres, strict=True):
-        poles, residues, error = _residues(*column, accuracy)
+    for (z, values), centre in zip(_columns(samples, abscissa, centres), centres, strict=True):
+        poles, residues, error = _residues(z, values, accuracy)
         misfit = max(misfit, error)
         scale = np.log(size) + abscissa * centre
         early, late = _in_time(poles, residues, abscissa, rising)
