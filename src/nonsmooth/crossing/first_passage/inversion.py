@@ -292,7 +292,7 @@ class _OnVerticalLines(_Inversion):
         lines = tuning.VERTICAL_LINES
         if not rising:
             return max(lines.best, lines.accuracy * self.tol)
-        worst = lines.relative if self.problem.settings.relative else np.inf
+        worst = max(lines.relative, self.tol) if self.problem.settings.relative else np.inf
         bound = line.size * np.exp(line.abscissa * self.times[here.stop - 1])
         return max(lines.rising, min(worst, lines.accuracy * self.tol / bound))
 
