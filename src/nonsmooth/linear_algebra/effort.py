@@ -7,11 +7,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
+import numpy as np
+
 from nonsmooth.errors import ToleranceError
 
 MOST = 6e11  # operations; chosen: half a minute to a minute of one core
-# fitted: operations of products that take as long as the modes of r equations at one z, over r^3
-EIGENPROBLEM = 100.0
+# fitted: operations of products that take as long as the modes of r real or complex equations at one
+# z, over r^3
+REAL_MODES, COMPLEX_MODES = 25.0, 100.0
 
 _left: ContextVar[list[float] | None] = ContextVar("left", default=None)
 
@@ -40,6 +43,11 @@ def limited(tol: float | None) -> Iterator[None]:
 def holds() -> bool:
     """Whether a limit holds."""
     return _left.get() is not None
+
+
+def of_modes(matrix: np.ndarray) -> float:
+    """Operations that the modes of equations with a matrix take, shape (r, r)."""
+    return (COMPLEX_MODES if np.iscomplexobj(matrix) else REAL_MODES) * len(matrix) ** 3
 
 
 def spend(operations: float) -> None:

@@ -21,7 +21,7 @@ import numpy as np
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
-from nonsmooth.linear_algebra.effort import EIGENPROBLEM, spend
+from nonsmooth.linear_algebra.effort import of_modes, spend
 
 
 class Fields(NamedTuple):
@@ -126,7 +126,7 @@ class ReducedOrdinates:
         """
         matrices, rows = self.matrices(eliminated, continued)
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
-        spend(EIGENPROBLEM * len(matrices[EVEN]) ** 3)
+        spend(of_modes(matrices[EVEN]))
         rates, even = _modes(matrices[EVEN], matrices[ODD])
         odd = matrices[EVEN] @ even / rates
         ones, decays = self.tests(EVEN) @ flow, _decaying(rates, self.grid.way)
