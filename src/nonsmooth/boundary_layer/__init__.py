@@ -9,7 +9,7 @@ length kappa. The manual derives them in `docs/methods/boundary_layer.md`.
 - `milne.layer_constants`: all constants, by the method that the scene allows.
 - `constants.LayerConstants`: the record of them, which every method returns.
 - `symmetric_line.layer_constants`: one variable, odd g; up to the order 3.
-- `asymmetric_line.layer_constants`: one variable, any g; up to the order 2.
+- `asymmetric_line.layer_constants`: one variable, any g; up to the order 3.
 - `two_variables.layer_constants`: two variables, odd g; up to the order 3.
 - `half_space.constants`: the Milne problem of two variables and its adjoint on one grid.
 - `sampled.sampled_kappa`, `sampled.sampled_poisson`: any odd g, by Monte Carlo; the order 1.

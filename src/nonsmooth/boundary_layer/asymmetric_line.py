@@ -6,6 +6,7 @@ q ~ kappa - x - u as x -> -inf, where A u = -g; at the lower one, its mirror ima
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -29,7 +30,7 @@ def applies(scene: Scene) -> bool:
 def layer_constants(
     scene: Scene, tol: float | None = None
 ) -> tuple[LayerConstants, LayerConstants]:
-    """Compute the constants of both thresholds, up to the order 2.
+    """Compute the constants of both thresholds, up to the order 3.
 
     Parameters
     ----------
@@ -109,18 +110,26 @@ def _modes(grid: Ordinates, g: np.ndarray) -> _Modes:
     return _Modes(diffusion, u - grid.masses @ u, inverses, modes)
 
 
-def _at_threshold(grid: Ordinates, g: np.ndarray, modes: _Modes, side: int) -> tuple:
-    """Solve the Milne problem at one side, -1 or 1.
+class _Layer(NamedTuple):
+    """The solution q = kappa - |x| - side u + d of the Milne problem at one side, -1 or 1.
 
-    Return kappa and the integral over x < 0 of E d, d being the sum of the modes that decay.
+    The modes of d, `parts[:, j]` with their strengths, decay over the lengths `lengths[j]`.
     """
+
+    kappa: float
+    lengths: np.ndarray
+    parts: np.ndarray
+
+
+def _at_threshold(grid: Ordinates, g: np.ndarray, modes: _Modes, side: int) -> _Layer:
+    """Solve the Milne problem at one side."""
     leaving = np.flatnonzero(side * g > 0)
     decaying = np.argsort(-side * modes.inverses)[: len(leaving) - 1]
     scale = np.sqrt(grid.masses[leaving])
     matrix = np.column_stack([np.ones(len(leaving)), modes.shapes[np.ix_(leaving, decaying)]])
     solution = np.linalg.solve(scale[:, None] * matrix, scale * side * modes.u[leaving])
-    means = grid.masses @ modes.shapes
-    return solution[0], (means * np.abs(modes.inverses))[decaying] @ solution[1:]
+    parts = modes.shapes[:, decaying] * solution[1:]
+    return _Layer(float(solution[0]), np.abs(modes.inverses[decaying]), parts)
 
 
 def mean(scene: Scene) -> float:
@@ -134,23 +143,56 @@ def _on_degree(scene: Scene, degree: int) -> LayerConstants:
     grid = ordinates(scene, degree)
     # subtract what the quadrature leaves of the mean
     g = grid.g - np.where(grid.g == 0, 0.0, grid.masses @ grid.g)
-    modes = _modes(grid, g)
-    diffusion, u = modes.diffusion, modes.u
-    h = grid.resolvent(0.0, EVEN, (g * u)[:, None])[:, 0]
-    skewness, square = grid.masses @ (g * u**2), grid.masses @ u**2
-    r = grid.resolvent(0.0, EVEN, (g * h - diffusion * u)[:, None])[:, 0]
-    layers = [_at_threshold(grid, g, modes, side) for side in (-1, 1)]
+    modes, m = _modes(grid, g), grid.masses
+    D, u = modes.diffusion, modes.u
+
+    def solved(source):
+        """Solve A f = -source, up to the mean of the source."""
+        return grid.resolvent(0.0, EVEN, source[:, None])[:, 0]
+
+    h = solved(g * u)
+    skewness, square = m @ (g * u**2), m @ u**2
+    r = solved(g * h - D * u)
+    dispersion, c = m @ (g * r), skewness / D
+    fifth = m @ (g * solved(g * r - D * h - skewness * u))
     # the layer of the other threshold, reflected, solves the adjoint problem at this one
+    below, above = layers = [_at_threshold(grid, g, modes, side) for side in (-1, 1)]
     upper, lower = (
-        float(square - kappa**2 / 2 + mean_layer - (skewness / diffusion) ** 2 / 2)
-        for kappa, mean_layer in layers
+        float(square - layer.kappa**2 / 2 + m @ layer.parts @ layer.lengths - c**2 / 2)
+        for layer in layers
+    )
+    short_waves = _overlap(m, u, below, above)
+    kappa3 = tuple(
+        float(
+            short_waves
+            + one.kappa * square
+            - one.kappa**3 / 3
+            + side * c * other.kappa * (one.kappa + side * c)
+            - side * c * one.kappa**2 / 2
+            + side * ((2 * c * dispersion - fifth) / D - m @ (u * h))
+        )
+        for side, one, other in ((-1, below, above), (1, above, below))
     )
     return LayerConstants(
-        diffusion=float(diffusion),
-        kappa=(float(layers[0][0]), float(layers[1][0])),
+        diffusion=float(D),
+        kappa=(below.kappa, above.kappa),
         u=float(grid.start[EVEN] @ u),
         skewness=float(skewness),
-        dispersion=float(grid.masses @ (g * r)),
+        dispersion=float(dispersion),
         dipole=(lower, upper),
         h=float(grid.start[EVEN] @ h),
+        kappa3=kappa3,
+        r=float(grid.start[EVEN] @ r),
+        fifth=float(fifth),
     )
+
+
+def _overlap(masses: np.ndarray, u: np.ndarray, below: _Layer, above: _Layer) -> float:
+    """Integral over x < 0 of E[q q*] without its polynomial part; the same at both thresholds."""
+    total = 0.0
+    for layer, other, side in ((below, above, -1), (above, below, 1)):
+        moments = layer.lengths * (other.kappa + layer.lengths)
+        total += masses @ layer.parts @ moments + side * (masses * u) @ layer.parts @ layer.lengths
+    decays = np.outer(below.lengths, above.lengths) / np.add.outer(below.lengths, above.lengths)
+    overlaps = below.parts.T @ (masses[:, None] * above.parts)
+    return float(total + np.sum(overlaps * decays))

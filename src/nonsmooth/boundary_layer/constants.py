@@ -33,11 +33,13 @@ class LayerConstants:
         plus a dipole of this strength at the threshold, which accounts for early times.
     h : float or None
         Value at the start of h, A h = D - g u.
-    kappa3 : float or None
-        At a finite p a wave cos(k x) has the extrapolation length kappa + kappa3 k^2 / p; for
-        odd g.
+    kappa3 : (float, float) or None
+        At a finite p a wave cos(k x) has the extrapolation length kappa + kappa3 k^2 / p at the
+        lower and at the upper threshold.
     r : float or None
         Value at the start of r, A r = D u + C - g h.
+    fifth : float
+        E in (D q^2 + C q^3 + B q^4 + E q^5) t; 0 for odd g.
     mean : float
         E g. The other constants are those of g - E g.
     """
@@ -49,8 +51,9 @@ class LayerConstants:
     dispersion: float | None = None
     dipole: tuple[float, float] | None = None
     h: float | None = None
-    kappa3: float | None = None
+    kappa3: tuple[float, float] | None = None
     r: float | None = None
+    fifth: float = 0.0
     mean: float = 0.0
 
     @property

@@ -15,8 +15,6 @@ from nonsmooth.statistics.asymptotic_variance import limit_variance
 
 def highest_order(scene: Scene) -> int:
     """Return the highest order of the corrected formula for which `layer_constants` suffices."""
-    if scene.is_line and not scene.is_odd():
-        return 2
     return 3 if scene.is_line or two_variables.applies(scene) else 1
 
 

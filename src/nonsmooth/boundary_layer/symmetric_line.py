@@ -163,6 +163,7 @@ def _on_degree(scene: Scene, degree: int) -> LayerConstants:
     source = np.append(0.0, g * h[inner] - diffusion * u)
     r = grid.resolvent(0.0, ODD, source[:, None])[inner, 0]
     both = float(square - kappa**2 / 2 + dipole)
+    kappa3 = float(square * kappa - kappa**3 / 3 + moments + np.sum(overlaps * decays))
     return LayerConstants(
         diffusion=float(diffusion),
         kappa=(float(kappa), float(kappa)),
@@ -170,6 +171,6 @@ def _on_degree(scene: Scene, degree: int) -> LayerConstants:
         dispersion=float(np.sum(weights * g * r)),
         dipole=(both, both),
         h=float(grid.start[EVEN] @ h),
-        kappa3=float(square * kappa - kappa**3 / 3 + moments + np.sum(overlaps * decays)),
+        kappa3=(kappa3, kappa3),
         r=float(grid.start[ODD][inner] @ r),
     )

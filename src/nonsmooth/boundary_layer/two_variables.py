@@ -91,7 +91,7 @@ def _record(diffusion, layer, interior, unit):
         dispersion=float(dispersion * unit),
         dipole=None if dipole is None else (dipole, dipole),
         h=h,
-        kappa3=kappa3,
+        kappa3=None if kappa3 is None else (kappa3, kappa3),
         r=r,
     )
 

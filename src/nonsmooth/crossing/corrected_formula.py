@@ -1,8 +1,8 @@
 """Corrected asymptotic formulas for threshold crossing, with a bound of their error.
 
 The order k has an error of the order p^(-(k+1)/2); `expansion` has the formulas. Order 1 is for odd
-g, or for the state y with white noise; order 2 for the latter; order 3 for the latter with odd g,
-and for two variables with odd g and drift and a finite n, which have order 2, too.
+g, or for the state y with white noise. Orders 2 and 3 are for the latter, and for two variables
+with odd g and drift and a finite n.
 
 Let k now be the highest order that is known for the scene. The stated error of an order is its
 distance to the order k, plus the change of the order k when the time is multiplied or divided by
@@ -55,8 +55,8 @@ def corrected_crossing(
     Parameters
     ----------
     scene : Scene
-        With the state y and white noise; or with two variables, finite n, odd g and drift. Odd g
-        for the order 3; for the order 1 any scene with odd g.
+        With the state y and white noise; or with two variables, finite n, odd g and drift. For the
+        order 1 any scene with odd g.
     threshold : (float, float)
         lower < 0 < upper, one of them possibly infinite, "1".
     horizons : numpy.ndarray, shape (k,)
@@ -114,13 +114,11 @@ def corrected_crossing(
 
 def _require_order(scene, order):
     """Refuse an order that does not exist for this scene."""
-    known = highest_order(scene)
-    if order > known:
-        need = "odd g" if known == 2 else "one variable, or two with odd g and drift and finite n"
+    if order > highest_order(scene):
         raise SceneError(
-            f"the corrected formula of order {order} needs {need}, not ({', '.join(scene.state)}) "
-            f"with {scene.noise.title} and g = {quoted(scene.observable)}; use order={known} or "
-            "method='monte_carlo'"
+            f"the corrected formula of order {order} needs one variable, or two with odd g and "
+            f"drift and finite n, not ({', '.join(scene.state)}) with {scene.noise.title} and g = "
+            f"{quoted(scene.observable)}; use order=1 or method='monte_carlo'"
         )
 
 
@@ -147,6 +145,8 @@ def _error_of_last(
     error = np.full(times.shape, tuning.CORRECTED_ERROR.rounding)
     error += np.max([np.abs(formula.last(times * np.exp(s * change)) - last) for s in (-1, 1)], 0)
     error += _next_order_of_drift(formula, times, last)
+    # where skewness makes passages earlier, some are at once, which are not; nor are some later
+    error += 2 * formula.last(tuning.CORRECTED_ERROR.at_once * times[:1])
     plain = formula.first(times)
     for moved in _moved_by_errors(formula.constants, errors):
         error += np.abs(replace(formula, constants=moved).first(times) - plain)
@@ -191,7 +191,8 @@ def _inherited(formula, errors, times):
         yield (errors.h + max(errors.dipole)) / (D * times)
         yield errors.dispersion * frequency / D**2
     if errors.order > 2:
-        yield (errors.kappa3 + errors.r) * np.sqrt(frequency / D) / times
+        yield (max(errors.kappa3) + errors.r) * np.sqrt(frequency / D) / times
+        yield errors.fifth * frequency / (D * D * times)
 
 
 def _moved_by_errors(c: LayerConstants, errors: LayerConstants) -> Iterator[LayerConstants]:

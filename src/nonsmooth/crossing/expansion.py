@@ -12,8 +12,9 @@ the derivation. In short, with the constants of `boundary_layer.constants`:
   beta = B/D^2 - 5 C^2 / (4 D^3); passages are (S + B/D - h + u^2/2) / D later. If beta is negative,
   there is no such clock. Then the time is multiplied by the exponential of beta times the
   logarithmic derivative of the rate of passage.
-- Order 3, for odd g, multiplies the time by two more factors of this kind: one with kappa3, which
-  moves the thresholds for short waves, and one with r - u h + u^3/3, which moves the start.
+- Order 3 multiplies the time by more factors of this kind: with kappa3, which moves the thresholds
+  for short waves; with r - u h + u^3/3 - (C/D) (h - u^2/2), which moves the start; and without
+  symmetry with C^3, B C and E, in proportion to the distance of the threshold.
 
 Three rules keep every order a distribution function at any p. A positive exponent X is replaced by
 X / (1 + X). If passages are earlier by d, the time t is multiplied by 1 + d / (t + d), so that
@@ -180,8 +181,7 @@ class Expansion:
                 reached = _advanced(reached, lead / D)
 
             def crossed(clock, passage=passage):
-                exponent = self._exponent(order, passage, spread, clock)
-                return passage.crossed(clock * np.exp(exponent))
+                return passage.crossed(self._moved(order, passage, spread, clock))
 
             total += averaged(crossed, reached, max(spread, 0.0))
         return np.clip(total, 0.0, 1.0)
@@ -200,17 +200,25 @@ class Expansion:
             total += tilt.passed(passed, level, times)
         return np.clip(total, 0.0, 1.0)
 
-    def _exponent(self, order, passage, spread, clock):
-        """Logarithm of the factor by which the time of a clock is multiplied."""
+    def _moved(self, order, passage, spread, clock):
+        """Multiply the time of a clock by what is neither a clock nor a lead."""
         if order == 1 or (order == 2 and spread >= 0):
-            return 0.0
-        c = self.constants
-        at, late, outwards, right = passage.slopes(clock)
+            return clock
+        c, D, skew = self.constants, self.constants.diffusion, self.constants.skewness
+        at, late, (lower, upper) = passage.slopes(clock)
         exponent = min(spread, 0.0) * late
         if order == 3:
-            jump = c.r - c.u * c.h + c.u**3 / 3
-            exponent = exponent + (jump * right - c.kappa3 * outwards) / (c.diffusion * at)
-        return np.where(exponent > 0, exponent / (1 + np.maximum(exponent, 0.0)), exponent)
+            jump = c.r - c.u * c.h + c.u**3 / 3 - skew / D * (c.h - c.u**2 / 2)
+            short_waves = c.kappa3[0] * lower + c.kappa3[1] * upper
+            exponent = exponent + (jump * (lower - upper) - short_waves) / (D * at)
+        clock = _multiplied(clock, exponent)
+        if order == 3 and passage.side != EITHER:
+            # a wave that decays like exp(-w x), z = D w^2, has the exponent delay w^4 x, too; in a
+            # factor of its own, times stay in order
+            delay = (c.fifth - 3 * skew * c.dispersion / D) / (2 * D) + (skew / D) ** 3
+            at, late, _ = passage.slopes(clock)
+            clock = _multiplied(clock, delay * passage.distance * late / (D**2 * at))
+        return clock
 
     def _either(self):
         """Passage of either threshold, with the dipole of the upper one."""
@@ -278,11 +286,16 @@ class BrownianPassage:
             return brownian_exit(-self.lower, variance, -self.upper)
         return brownian_crossing(self.upper, variance, self.lower)
 
-    def slopes(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    @property
+    def distance(self) -> float:
+        """Way to the threshold, negative to the lower one."""
+        return self.upper if self.side == UPPER else self.lower
+
+    def slopes(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple]:
         """Return times and the logarithmic derivatives of the rate of passage there.
 
         The times are those given, or the nearest at which the rate can be computed; the derivatives
-        are in the time, for moving both levels outwards, and for moving the start to the right.
+        are in the time, and for moving the lower and the upper level outwards.
         """
         near, width = self._distance(), self.upper - self.lower
         times = np.clip(
@@ -291,8 +304,8 @@ class BrownianPassage:
             2 * width**2 / (np.pi**2 * self.rate) * tuning.ORDERS.deepest,
         )
 
-        def log_rate(times, outwards=0.0, right=0.0):
-            upper, lower = self.upper + outwards - right, self.lower - outwards - right
+        def log_rate(times, below=0.0, above=0.0):
+            upper, lower = self.upper + above, self.lower - below
             if self.side == UPPER:
                 return np.log(brownian_exit_density(upper, self.rate * times, lower))
             if self.side == LOWER:
@@ -301,19 +314,21 @@ class BrownianPassage:
 
         relative = tuning.ORDERS.step
         step = relative * min(self.upper, -self.lower)
-        return (
-            times,
-            (log_rate(times * (1 + relative)) - log_rate(times * (1 - relative)))
-            / (2 * relative * times),
-            (log_rate(times, outwards=step) - log_rate(times, outwards=-step)) / (2 * step),
-            (log_rate(times, right=step) - log_rate(times, right=-step)) / (2 * step),
-        )
+        late = log_rate(times * (1 + relative)) - log_rate(times * (1 - relative))
+        below = log_rate(times, below=step) - log_rate(times, below=-step)
+        above = log_rate(times, above=step) - log_rate(times, above=-step)
+        return times, late / (2 * relative * times), (below / (2 * step), above / (2 * step))
 
     def _distance(self):
         """Distance to the level, or to the nearer of both."""
         if self.side == EITHER:
             return min(self.upper, -self.lower)
         return self.upper if self.side == UPPER else -self.lower
+
+
+def _multiplied(times, exponent):
+    """Multiply times by an exponential; of a positive exponent X, by that of X / (1 + X)."""
+    return times * np.exp(exponent / (1 + np.maximum(exponent, 0.0)))
 
 
 def _advanced(times, lead):

@@ -16,7 +16,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from nonsmooth.boundary_layer import two_variables
-from nonsmooth.boundary_layer.milne import highest_order
+from nonsmooth.boundary_layer.milne import highest_order, mean_of_line
 from nonsmooth.checks import (
     require_choice,
     require_count,
@@ -103,10 +103,9 @@ def crossing_probability(
         - ``"asymptotic"`` is W_star(b / gamma, T), the limit p -> infinity, eq. (33) of the paper.
           It does not depend on p; its error does.
         - ``"corrected"`` adds what the boundary layer does at a finite p; its error is of the
-          order 1/p, p^(-3/2) or p^(-2). For the state y with white noise it has the orders 1 and
-          2, and 3 if g is odd; order 1 also if E g != 0, as with a small slope. Two variables at a
-          finite n have all three if g and the drift are odd. Elsewhere it needs odd g and has the
-          order 1.
+          order 1/p, p^(-3/2) or p^(-2). All three are for the state y with white noise, and for two
+          variables at a finite n if g and the drift are odd. With E g != 0, as with a small slope,
+          the former has the order 1. Elsewhere it needs odd g and has the order 1.
     tol : float, optional
         Absolute error wanted. Unless given, it is 1e-2 for ``"monte_carlo"``, and 1e-7 for
         ``"deterministic"`` or 1e-4 with two variables; for ``"importance_sampling"`` a tenth of
@@ -289,9 +288,11 @@ def _order_that_suffices(scene, p, last, tol, given):
         return 1 if tol * p >= choice.first_order else None
     if not scene.is_line:
         return None
-    early = given and scene.is_odd() and tol * p**2 >= choice.least_corrected
+    early = given and tol * p**2 >= choice.least_corrected
     late = p * last * scene.damping >= choice.rounded
-    return highest_order(scene) if early or late else None
+    if (early or late) and mean_of_line(scene) == 0:
+        return highest_order(scene)
+    return 1 if late else None
 
 
 def _asymptotic(scene, thresholds, horizons, p, seed, threads):

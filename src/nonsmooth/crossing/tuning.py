@@ -122,6 +122,7 @@ class CorrectedError:
     # R is at most the first number plus the second times log(1 + 2 m / b); fitted: as above
     longest: tuple[float, float] = (1.5, 2.0)
     drift: float = 2.0  # factor of X; fitted: errors of forty random scenes of one variable
+    at_once: float = 1e-9  # derived: part of the first time, in which nothing crosses
     # part of a tolerance that the error of kappa may take; and an error of kappa of two variables
     # that costs much less than the usual one; chosen
     share_of_kappa: float = 0.2

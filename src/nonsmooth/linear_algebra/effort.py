@@ -12,8 +12,8 @@ import numpy as np
 from nonsmooth.errors import ToleranceError
 
 MOST = 6e11  # operations; chosen: half a minute to a minute of one core
-# fitted: operations of products that take as long as the modes of r real or complex equations at one
-# z, over r^3
+# fitted: operations of products that take as long as the modes of r real or complex equations, over
+# r^3
 REAL_MODES, COMPLEX_MODES = 25.0, 100.0
 
 _left: ContextVar[list[float] | None] = ContextVar("left", default=None)

@@ -6,6 +6,8 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.boundary_layer import symmetric_line
 from nonsmooth.boundary_layer.asymmetric_line import layer_constants
+from nonsmooth.grids.solver import EVEN
+from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.line.eigenfunctions import spectrum
 from nonsmooth.line.quadrature import mean as stationary_mean
 from references import FRICTION, KAPPA, MIRRORED, SKEWED, SKEWED_AND_STARTED
@@ -22,12 +24,30 @@ def test_difference_of_the_extrapolation_lengths(skewed):
     found, _ = skewed
     lower, upper = found.kappa
     assert upper - lower == pytest.approx(found.skewness / found.diffusion, abs=1e-12)
-    assert found.order == 2
+    assert found.order == 3
+
+
+def test_difference_for_short_waves(skewed):
+    """The same flux at z != 0, where waves with both roots of Lambda(q) = z count.
+
+    With c = C/D and means M, it gives
+    kappa3_- - kappa3_+ = (2 E - 4 c B) / D - c M[u^2] + 11 c^3 / 6 + 2 M[u h].
+    """
+    found, errors = skewed
+    grid = ordinates(SKEWED_AND_STARTED, 14)
+    g, mean = grid.g, lambda f: grid.masses @ f
+    u = grid.resolvent(0.0, EVEN, (g - mean(g))[:, None])[:, 0]
+    h = grid.resolvent(0.0, EVEN, (g * u)[:, None])[:, 0]
+    D, c = found.diffusion, found.skewness / found.diffusion
+    expected = (2 * found.fifth - 4 * c * found.dispersion) / D - c * mean(u * u)
+    expected += 11 / 6 * c**3 + 2 * mean(u * h)
+    lower, upper = found.kappa3
+    assert lower - upper == pytest.approx(expected, abs=1e-9 + errors.largest())
 
 
 @pytest.mark.slow
 def test_cumulants(skewed):
-    """D, C and B are the first derivatives of the largest eigenvalue of A + q g at q = 0."""
+    """D, C, B and E are the first derivatives of the largest eigenvalue of A + q g at q = 0."""
     found, _ = skewed
     s = spectrum(SKEWED_AND_STARTED, 10)
 
@@ -37,8 +57,9 @@ def test_cumulants(skewed):
     # polynomials in q: what is left out is of the order 0.3^5 of the largest
     q = 0.3 * np.cos(np.pi * (np.arange(16) + 0.5) / 16)
     fit = np.polynomial.Polynomial.fit(q, [largest(at) for at in q], 12).convert().coef
-    expected = [0, 0, found.diffusion, found.skewness, found.dispersion]
-    assert fit[:5] == pytest.approx(expected, abs=1e-8)
+    expected = [0, 0, found.diffusion, found.skewness, found.dispersion, found.fifth]
+    # an error of 1e-10 of the eigenvalues is one of 1e-10 / 0.3^k of the coefficients
+    assert np.all(np.abs(fit[:6] - expected) <= 1e-10 / 0.3 ** np.arange(6))
 
 
 def test_limit_of_odd_g():
@@ -53,6 +74,8 @@ def test_limit_of_odd_g():
     assert found.dipole == pytest.approx(odd.dipole, abs=2e-5)
     assert found.dispersion == pytest.approx(odd.dispersion, abs=2e-5)
     assert found.h == pytest.approx(odd.h, abs=2e-5)
+    assert found.kappa3 == pytest.approx(odd.kappa3, abs=2e-5)
+    assert found.r == pytest.approx(odd.r, abs=2e-5)
 
 
 @pytest.mark.slow

@@ -320,3 +320,12 @@ def test_a_pole_of_g_is_told():
     scene = ns.Scene("friction", observable="1/(y**2 + 1e-12)")
     with pytest.raises(ns.NonsmoothError, match="Monte Carlo"):
         ns.crossing_probability(scene, 0.5, [1.0])
+
+
+def test_very_late_crossings_of_an_uncentred_g():
+    """The formulas that come before the solver there need E g = 0, but for the first."""
+    scene = ns.Scene("friction", observable="y + 0.001")
+    found = ns.crossing_probability(scene, 0.6, [2.0], 1e7, tol=1e-2)
+    assert found.attrs["method"] == "corrected"
+    # the drift carries int g to p T 0.001, ten times as far as the threshold is
+    assert abs(found.probability[0] - 1) <= found.probability_error[0]
