@@ -116,8 +116,7 @@ class TestSmallScales:
         """
         horizons = tuple(np.geomspace(0.1, 4, 10) * ((np.max(threshold) + 0.3 / p**0.5) / 0.4) ** 2)
         first, *others = (
-            errors(threshold, p, scene, formula, horizons, tol=1e-5)
-            for formula in ORDERS
+            errors(threshold, p, scene, formula, horizons, tol=1e-5) for formula in ORDERS
         )
         near = np.abs(np.log(np.divide.outer(horizons, horizons))) <= 0.7
         allowed = np.maximum(np.max(near * first, axis=1), first.max() / 50)
