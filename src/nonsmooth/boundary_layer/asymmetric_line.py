@@ -161,18 +161,12 @@ def _on_degree(scene: Scene, degree: int) -> LayerConstants:
         float(square - layer.kappa**2 / 2 + m @ layer.parts @ layer.lengths - c**2 / 2)
         for layer in layers
     )
-    short_waves = _overlap(m, u, below, above)
-    kappa3 = tuple(
-        float(
-            short_waves
-            + one.kappa * square
-            - one.kappa**3 / 3
-            + side * c * other.kappa * (one.kappa + side * c)
-            - side * c * one.kappa**2 / 2
-            + side * ((2 * c * dispersion - fifth) / D - m @ (u * h))
-        )
-        for side, one, other in ((-1, below, above), (1, above, below))
-    )
+    overlap, odd = _overlap(m, u, below, above), (2 * c * dispersion - fifth) / D - m @ (u * h)
+
+    def kappa3(side, kappa, other):
+        even = overlap + kappa * square - kappa**3 / 3
+        return float(even + side * (odd + c * other * (kappa + side * c) - c * kappa**2 / 2))
+
     return LayerConstants(
         diffusion=float(D),
         kappa=(below.kappa, above.kappa),
@@ -181,7 +175,7 @@ def _on_degree(scene: Scene, degree: int) -> LayerConstants:
         dispersion=float(dispersion),
         dipole=(lower, upper),
         h=float(grid.start[EVEN] @ h),
-        kappa3=kappa3,
+        kappa3=(kappa3(-1, below.kappa, above.kappa), kappa3(1, above.kappa, below.kappa)),
         r=float(grid.start[EVEN] @ r),
         fifth=float(fifth),
     )
