@@ -38,7 +38,8 @@ def layer_constants(
         To which this `applies`, with E g = 0. Scenes with odd g and drift are excluded because they
         are discretised on half of the line.
     tol : float, optional
-        Absolute error wanted of all constants; 1e-8 unless given.
+        Absolute error wanted of both kappa, and of the other constants times the largest of them
+        if that is above 1; 1e-8 unless given.
 
     Returns
     -------
@@ -55,7 +56,7 @@ def layer_constants(
         tuning.LINE.degrees,
         lambda degree: _on_degree(scene, degree),
         lambda levels: levels[-1].distance(levels[-2]),
-        lambda _, errors: errors.largest() <= tol,
+        lambda values, errors: errors.meets(tol, values),
     )
     if not found.met:
         lower, upper = found.value.kappa

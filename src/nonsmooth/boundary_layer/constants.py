@@ -13,7 +13,7 @@ import numpy as np
 class LayerConstants:
     """Constants of a scene, or the errors of such constants; those that are not known are None.
 
-    For odd g both thresholds have the same kappa and the same dipole, and the skewness is 0.
+    For odd g both thresholds have the same constants, and skewness and fifth are 0.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class LayerConstants:
     r : float or None
         Value at the start of r, A r = D u + C - g h.
     fifth : float
-        E in (D q^2 + C q^3 + B q^4 + E q^5) t; 0 for odd g.
+        The factor of q^5 in this logarithm over t.
     mean : float
         E g. The other constants are those of g - E g.
     """
@@ -67,6 +67,10 @@ class LayerConstants:
         """Return the largest absolute value of all known constants."""
         known = [value for value in vars(self).values() if value is not None]
         return float(np.max(np.abs(np.hstack(known))))
+
+    def meets(self, tol: float, values: "LayerConstants") -> bool:
+        """Whether these errors are within `tol`: of kappa, and of others relative to large ones."""
+        return max(self.kappa) <= tol and self.largest() <= tol * max(1.0, values.largest())
 
     def distance(self, other: "LayerConstants") -> "LayerConstants":
         """Return the absolute differences to other constants, of which the same must be known."""

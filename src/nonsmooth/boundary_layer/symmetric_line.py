@@ -57,14 +57,11 @@ def layer_constants(
         )
     tol = tuning.LINE.accuracy if tol is None else tol
 
-    def met(values, errors):
-        return errors.largest() <= tol * max(1.0, values.largest()) and errors.kappa[1] <= tol
-
     found = until_agreement(
         tuning.LINE.degrees,
         lambda degree: _on_degree(scene, degree),
         lambda levels: levels[-1].distance(levels[-2]),
-        met,
+        lambda values, errors: errors.meets(tol, values),
     )
     values, errors = found.value, found.error
     if not found.met:

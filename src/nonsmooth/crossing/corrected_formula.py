@@ -191,8 +191,9 @@ def _inherited(formula, errors, times):
         yield (errors.h + max(errors.dipole)) / (D * times)
         yield errors.dispersion * frequency / D**2
     if errors.order > 2:
-        yield (max(errors.kappa3) + errors.r) * np.sqrt(frequency / D) / times
-        yield errors.fifth * frequency / (D * D * times)
+        yield (max(errors.kappa3) + errors.r) * np.sqrt(frequency / D) / (D * times)
+        farther = max(w for w in (-formula.moved_lower, formula.moved_upper) if np.isfinite(w))
+        yield errors.fifth * farther * frequency / (2 * D**3 * times)
 
 
 def _moved_by_errors(c: LayerConstants, errors: LayerConstants) -> Iterator[LayerConstants]:

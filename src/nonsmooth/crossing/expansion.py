@@ -16,12 +16,13 @@ the derivation. In short, with the constants of `boundary_layer.constants`:
   for short waves; with r - u h + u^3/3 - (C/D) (h - u^2/2), which moves the start; and without
   symmetry with C^3, B C and E, in proportion to the distance of the threshold.
 
-Three rules keep every order a distribution function at any p. A positive exponent X is replaced by
-X / (1 + X). If passages are earlier by d, the time t is multiplied by 1 + d / (t + d), so that
-times stay in order. Where the layer is as thick as the interval, the expansion means nothing, and
-order 1 takes over: the last order has the weight exp(-(2 m / b)^4), where m is the thickness of the
-layer and b the distance to the nearer threshold. Besides, order 2 of odd g is kept at most half as
-far from order 3 as order 1 is. All these changes are smaller than the error of the order.
+Four rules keep every order a distribution function at any p. The factors are applied one after the
+other. A positive exponent X is replaced by X / (1 + X). If passages are earlier by d, the time t is
+multiplied by 1 + d / (t + d), so that times stay in order. Where the layer is as thick as the
+interval, the expansion means nothing, and order 1 takes over: the last order has the weight exp(-(2
+m / b)^4), where m is the thickness of the layer and b the distance to the nearer threshold.
+Besides, order 2 is kept at most half as far from order 3 as order 1 is. All these changes are
+smaller than the error of the order.
 """
 
 from dataclasses import dataclass, replace

@@ -89,8 +89,8 @@ def crossing_probability(
           white noise and, in up to some minutes, for two state variables with finite n, odd g and
           drift, and white or Langevin noise. For these scenes it is chosen, with three
           exceptions: a parameter of another method is given; or `tol` is so loose that
-          ``"monte_carlo"`` should be faster or, for one variable and odd g, that ``"corrected"``
-          meets it; or p is so large that ``"corrected"`` should meet `tol` (above 10 / `tol` for
+          ``"monte_carlo"`` should be faster or, for one variable, that ``"corrected"`` meets
+          it; or p is so large that ``"corrected"`` should meet `tol` (above 10 / `tol` for
           two variables; for one if the last time is above 1e7 relaxation times, where the solver
           rounds). If no `tol` is given, it ends after about a minute with what it has, or leaves
           the answer to ``"monte_carlo"``.

@@ -9,7 +9,7 @@ def test_order_follows_from_what_is_known():
     """The orders 1, 2 and 3 need one more group of constants each."""
     second = LayerConstants(1.0, (1.0, 2.0), 0.5, dispersion=0.1, dipole=(0.1, 0.2), h=0.3)
     third = LayerConstants(
-        1.0, (1.0, 1.0), 0.5, dispersion=0.1, dipole=(0.1, 0.1), h=0.3, kappa3=0.0, r=0.1
+        1.0, (1.0, 1.0), 0.5, dispersion=0.1, dipole=(0.1, 0.1), h=0.3, kappa3=(0.0, 0.0), r=0.1
     )
     assert [constants.order for constants in (FIRST, second, third)] == [1, 2, 3]
 

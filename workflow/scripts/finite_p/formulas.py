@@ -83,7 +83,7 @@ def formulas(scene, threshold, horizons, p, fit_from, exact_tolerance, resolved)
     }
     constants, errors = layer_constants(scene)
     for name, text in CONSTANTS.items():
-        # kappa and the dipole are pairs, equal for odd g
+        # kappa, the dipole and kappa3 are pairs, equal for odd g
         value, uncertainty = (float(np.max(getattr(c, name))) for c in (constants, errors))
         variables[name] = ((), value, text)
         variables[f"{name}_error"] = ((), uncertainty, "difference of two polynomial degrees")

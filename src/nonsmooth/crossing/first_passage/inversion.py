@@ -270,13 +270,12 @@ class _OnVerticalLines(_Inversion):
             share, off = tuning.VERTICAL_LINES.negligible * min(accuracy, 1.0), 0.0
             # in the rise F is less than what bases leave out, and the best fits have no room for it
             if not rising and accuracy > tuning.VERTICAL_LINES.best:
-                parts, off = self.problem.parts_on_line(parts, of_grid, abscissa, accuracy)
+                parts, off = self.problem.parts_on_line(parts, of_grid, line.abscissa, accuracy)
             begun = np.maximum(fronts, self.saddles.begin(line.abscissa, share))
             found = vertical_lines.inverted(parts, line, begun, accuracy, rising, offset=turn / 2)
             values = found.at(self.times[here])
-            off += found.misfit if found.misfit > accuracy else 0.0  # else levels tell
-            growth = line.size * np.exp(line.abscissa * self.times[here])
-            inexact = tuning.VERTICAL_LINES.inverse * off * growth
+            growth = abs(line.size) * np.exp(line.abscissa * self.times[here])
+            inexact = tuning.VERTICAL_LINES.inverse * (off + found.misfit + share) * growth
         self._store(here, values, inexact=inexact)
 
     def _line(self, parts, abscissa):
@@ -293,8 +292,8 @@ class _OnVerticalLines(_Inversion):
         if not rising:
             return max(lines.best, lines.accuracy * self.tol)
         worst = max(lines.relative, self.tol) if self.problem.settings.relative else np.inf
-        bound = line.size * np.exp(line.abscissa * self.times[here.stop - 1])
-        return max(lines.rising, min(worst, lines.accuracy * self.tol / bound))
+        bound = abs(line.size) * np.exp(line.abscissa * self.times[here.stop - 1])
+        return max(lines.rising, min(worst, lines.accuracy * self.tol / max(bound, lines.tiny)))
 
 
 def _begin(problem, saddles):

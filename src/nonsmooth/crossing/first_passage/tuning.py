@@ -102,9 +102,10 @@ class VerticalLines:
     # 1, above it most of all. From 10 to 10^4 it makes no difference
     unit: float = 100.0
     far: tuple[float, ...] = (2.0, 4.0, 8.0, 30.0, 100.0)  # chosen: heights at which F is 0
-    # chosen: more samples must make an error at least so much smaller if it is less than ...
+    # chosen: errors below the second number that more samples do not make smaller by the first are
+    # rounding; larger ones are turns of F
     falls: float = 0.5
-    rounded: float = 1e-6  # chosen: ... this; larger ones are no rounding, but turns of F
+    rounded: float = 1e-6
     closest: float = 1.001  # chosen: ratio of heights between which no sample is added
     most: int = 250  # chosen: number of samples from which no more are added
     terms: int = 100  # chosen: largest number of terms of a fit
@@ -116,7 +117,9 @@ class VerticalLines:
     best: float = 1e-10  # chosen: ... and the best, above rounding, ...
     rising: float = 1e-7  # chosen: ... also in the rise, where F is rounded more
     negligible: float = 0.1  # chosen: a share of F below so much of the accuracy counts as none
-    relative: float = 1e-6  # chosen: in the rise, where small probabilities keep relative accuracy
+    # chosen: in the rise, where small probabilities keep this relative accuracy, or that of `tol`
+    relative: float = 1e-6
+    tiny: float = 1e-300  # derived: about the smallest normal number
     # chosen: error of an inverse over that of F and exp(s t), a logarithm of heights over pi
     inverse: float = 3.0
     # chosen: of neighbouring lines in the rise; a bound is then at most some 100 times Chernoff's

@@ -137,10 +137,10 @@ def inverted(
         return values * (abscissa / z) if rising else values
 
     with np.errstate(divide="ignore"):
-        # above, the phase of exp(-z t_0) is rounded by more than the accuracy
+        # above, the phase of the delay is rounded by more than the accuracy
         highest = accuracy / (tuning.VERTICAL_LINES.phase * np.max(delays))
     samples = _until_negligible(scaled, line, accuracy, offset, highest)
-    centres = np.maximum(delays, _delays(scaled, samples, line, accuracy))
+    centres = np.maximum(delays, _centres(scaled, samples, line, accuracy, delays))
     misfit = _add_where_wrong(scaled, samples, line, accuracy, centres)
     before, after = [], []
     for (z, values), centre in zip(_columns(samples, abscissa, centres), centres, strict=True):
@@ -179,10 +179,11 @@ def _until_negligible(scaled, line, accuracy, offset, highest):
     return samples
 
 
-def _delays(scaled, samples, line, accuracy):
+def _centres(scaled, samples, line, accuracy, delays):
     """When the paths arrive, on average, that F is made of where it is half way to negligible.
 
     That is the change of the phase of F by height, for each part; 0 of a part that is negligible.
+    The phase of the delay is taken away before, so that what is left is less than a turn.
     """
     heights, values = np.array(list(samples)), np.abs(list(samples.values()))
     largest, change = np.max(values, axis=0), line.lowest * line.abscissa
@@ -192,7 +193,8 @@ def _delays(scaled, samples, line, accuracy):
         height = heights[np.flatnonzero(values[:, part] >= half_way)[-1]]
         samples[height + change] = scaled(height + change)
         turned = samples[height + change][part] / samples[height][part]
-        found[part] = -np.angle(turned) / change
+        early = delays[part]
+        found[part] = early - np.angle(turned * np.exp(1j * change * early)) / change
     return found
 
 
@@ -202,7 +204,7 @@ def _add_where_wrong(scaled, samples, line, accuracy, centres):
     Returns what the last of these fits was wrong by.
     """
     settings, abscissa = tuning.VERTICAL_LINES, line.abscissa
-    unsure, worst = list(pairwise(sorted(samples)[1:])), np.inf
+    unsure, worst, checked = list(pairwise(sorted(samples)[1:])), np.inf, 0.0
     unit = settings.unit * abscissa
     while unsure and len(samples) < settings.most:
         columns = _columns(samples, abscissa, centres)
@@ -216,11 +218,12 @@ def _add_where_wrong(scaled, samples, line, accuracy, centres):
             errors.append(np.max(np.abs(found - there)))
             if errors[-1] > accuracy and high > settings.closest * low:
                 wrong += [(low, middle), (middle, high)]
-        last, worst = worst, max(errors)
+        last, worst = worst, np.nan_to_num(np.max(errors), nan=np.inf)
+        checked = worst
         if settings.falls * last < worst < settings.rounded:  # no sample mends that F is rounded
             break
         unsure = wrong
-    return worst if np.isfinite(worst) else 0.0
+    return checked
 
 
 def _columns(samples, abscissa, centres):
