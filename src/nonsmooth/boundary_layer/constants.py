@@ -39,7 +39,7 @@ class LayerConstants:
     r : float or None
         Value at the start of r, A r = D u + C - g h.
     fifth : float
-        The factor of q^5 in this logarithm over t.
+        Factor of q^5 in the logarithm of E exp(q int_0^t g) over t, as B is that of q^4.
     mean : float
         E g. The other constants are those of g - E g.
     """

@@ -145,8 +145,9 @@ def _error_of_last(
     error = np.full(times.shape, tuning.CORRECTED_ERROR.rounding)
     error += np.max([np.abs(formula.last(times * np.exp(s * change)) - last) for s in (-1, 1)], 0)
     error += _next_order_of_drift(formula, times, last)
-    # where skewness makes passages earlier, some are at once, which are not; nor are some later
-    error += 2 * formula.last(tuning.CORRECTED_ERROR.at_once * times[:1])
+    # skewness makes passages earlier, some so much that they come at once: an error, later as well
+    settings = tuning.CORRECTED_ERROR
+    error += settings.lasting * formula.last(settings.at_once * times[:1])
     plain = formula.first(times)
     for moved in _moved_by_errors(formula.constants, errors):
         error += np.abs(replace(formula, constants=moved).first(times) - plain)

@@ -123,6 +123,7 @@ class CorrectedError:
     longest: tuple[float, float] = (1.5, 2.0)
     drift: float = 2.0  # factor of X; fitted: errors of forty random scenes of one variable
     at_once: float = 1e-9  # derived: part of the first time, in which nothing crosses
+    lasting: float = 2.0  # chosen: the error from then on, over what the formula says has crossed
     # part of a tolerance that the error of kappa may take; and an error of kappa of two variables
     # that costs much less than the usual one; chosen
     share_of_kappa: float = 0.2

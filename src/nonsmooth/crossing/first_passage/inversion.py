@@ -293,7 +293,8 @@ class _OnVerticalLines(_Inversion):
             return max(lines.best, lines.accuracy * self.tol)
         worst = max(lines.relative, self.tol) if self.problem.settings.relative else np.inf
         bound = abs(line.size) * np.exp(line.abscissa * self.times[here.stop - 1])
-        return max(lines.rising, min(worst, lines.accuracy * self.tol / max(bound, lines.tiny)))
+        bound = max(bound, tuning.REFINEMENT.underflow)
+        return max(lines.rising, min(worst, lines.accuracy * self.tol / bound))
 
 
 def _begin(problem, saddles):

@@ -119,7 +119,6 @@ class VerticalLines:
     negligible: float = 0.1  # chosen: a share of F below so much of the accuracy counts as none
     # chosen: in the rise, where small probabilities keep this relative accuracy, or that of `tol`
     relative: float = 1e-6
-    tiny: float = 1e-300  # derived: about the smallest normal number
     # chosen: error of an inverse over that of F and exp(s t), a logarithm of heights over pi
     inverse: float = 3.0
     # chosen: of neighbouring lines in the rise; a bound is then at most some 100 times Chernoff's
