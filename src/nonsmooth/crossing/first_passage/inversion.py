@@ -235,18 +235,17 @@ class _OnVerticalLines(_Inversion):
 
     def _rise(self, begin, end):
         """Solve windows in which the probability is still small, the last first."""
-        settings, negligible = self.problem.settings, begin
+        settings, negligible, above = self.problem.settings, begin, 0.0
         of_rise = _lines_of_rise(self.problem, self.times, self.saddles, begin, end)
         for here, abscissa in reversed(of_rise):
             self._on_line(here, abscissa, rising=True)
             # if the probability is negligible here, although its bound is not, it is so before
-            if (
-                abs(self.found[0, here.start])
-                < tuning.INVERSION.surely * settings.least_probability
-            ):
-                negligible = here.start
+            first = here.start
+            if abs(self.found[0, first]) < tuning.INVERSION.surely * settings.least_probability:
+                negligible, above = first, self.inexact[first]
                 break
-        self._store(slice(negligible), np.zeros(negligible))
+        inexact = np.minimum(np.exp(self.saddles.bound[:negligible]), above)
+        self._store(slice(negligible), np.zeros(negligible), inexact=inexact)
 
     def _later(self, windows):
         """Solve the window after the rise, on the line that serves its last time."""
