@@ -266,6 +266,7 @@ class _Question:
         self._refusal: str | None = None
         self._answers: dict[tuple, xr.Dataset] = {}
         self.attributes: dict = {}
+        self._last = ""  # method of the last answer
 
     def __call__(
         self,
@@ -293,8 +294,8 @@ class _Question:
             if not isinstance(refused.result, xr.Dataset):
                 raise
             found = refused.result
-        taken = self.attributes.get("method", "").split(", ")
-        methods = dict.fromkeys([*filter(None, taken), found.attrs["method"]])
+        self._last, taken = found.attrs["method"], self.attributes.get("method", "").split(", ")
+        methods = dict.fromkeys([*filter(None, taken), self._last])
         self.attributes = found.attrs | {"method": ", ".join(methods)}
         return found
 
@@ -359,7 +360,8 @@ class _Question:
         try:
             if not sampled and not named:
                 solved({k: around(guess[0], beside) for k, guess in enumerate(guesses)})
-                sampled = SAMPLED in self.attributes["method"].split(", ")
+                # those of the longest horizon, which come last, have the others for nothing
+                sampled = self._last == SAMPLED
             if not sampled:
                 searches = [
                     searched(reference, target, guess, sense, tol or 0.0, beside)
@@ -401,7 +403,8 @@ class _Question:
 
 def _paths(targets, tol):
     """Count the paths that tell W to the tolerance where it is one of the targets."""
-    return max(paths_for(np.sqrt(P * (1 - P)), tol) for P in targets)
+    wanted = (paths_for(np.sqrt(P * (1 - P)), tol) for P in targets)
+    return max(tuning.GRID.least_paths, *wanted)
 
 
 def _require_possible(targets, tol):
