@@ -6,6 +6,7 @@ Generalizations of Davidson's method for computing eigenvalues of large nonsymme
 J. Comput. Phys. 101 (1992), and its harmonic projection in Linear Algebra Appl. 154-156 (1991).
 """
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -24,6 +25,7 @@ def slow_rates(
     known: float,
     room: int,
     most: int,
+    slower: float = math.inf,
 ) -> np.ndarray:
     """Compute eigenvalues of small modulus of a real operator, one of them accurately.
 
@@ -45,6 +47,9 @@ def slow_rates(
         Number of vectors that are kept, more than four times `wanted`; each takes 2 n numbers.
     most : int
         Number of vectors that are tried.
+    slower : float
+        A real part below which the smallest one is of interest; if it is not, its residual is that
+        of the others.
 
     Returns
     -------
@@ -65,9 +70,11 @@ def slow_rates(
     while tried < most and space.size > wanted:
         inverses, modes = space.modes(wanted)
         order = np.argsort((1 / inverses).real, kind="stable")
-        residual = _too_large(space, inverses[order], modes[:, order], accuracy, known)
+        rates = 1 / inverses[order]
+        needed = accuracy if rates[0].real < slower else known
+        residual = _too_large(space, inverses[order], modes[:, order], needed, known)
         if residual is None:
-            return 1 / inverses[order]
+            return rates
         parts = [residual.real, residual.imag] if residual.imag.any() else [residual.real]
         if space.size + len(parts) > room:
             space.reduce(room // 4)

@@ -114,7 +114,7 @@ def crossing_threshold(
         level, slope = typical_reach(scene, p * T, equal, seed, threads)
         if level == 0:
             raise SceneError(
-                f"probability is {P!r}, but up to T = {T:g} it is about as likely or likelier that "
+                f"probability is {P:g}, but up to T = {T:g} it is about as likely or likelier that "
                 f"int g stays 0, where g = {quoted(scene.observable)}; choose a smaller one"
             )
         return level / np.sqrt(p), slope
@@ -330,8 +330,8 @@ class _Question:
 
         By Monte Carlo those of one tolerance on the same paths, from `curves`, which returns W for
         each target; otherwise those of one tolerance together, from `together`, which takes x for
-        the numbers of some targets. The reference is W of Brownian motion. At the distance `beside`
-        in log x of the first x, W costs nothing more.
+        the numbers of some targets. The reference is W of Brownian motion. Up to the distance
+        `beside` in log x of each x, W costs nothing more.
         """
         # otherwise the method follows from the scene
         named = bool({"method", "order"} & self._given.keys())

@@ -132,11 +132,11 @@ def searched(
     tol : float, optional
         Error of W that is good enough, if values are better than that.
     beside : float, optional
-        Distance in log x to two places beside the guess at which W is wanted, too.
+        Distance in log x up to which W is wanted at places beside each x, too.
 
     Yields
     ------
-    numpy.ndarray, shape (1,) or (3,)
+    numpy.ndarray, shape (k,)
         x > 0, of which it is sent the `Values`.
 
     Returns
@@ -153,8 +153,8 @@ def searched(
     x, left, right = guess[0], 0.0, np.inf
     points: list[_Point] = []
     known: tuple[_Point, float, float] | None = None
-    for number in range(search.most):
-        places = around(x, 0.0 if number else beside)
+    for _ in range(search.most):
+        places = around(x, beside)
         try:
             values = yield places
         except ToleranceError:
@@ -216,8 +216,8 @@ def equivalent(reference: Callable[[float], float], W: float, sense: int) -> flo
 
 
 def around(x: float, beside: float) -> np.ndarray:
-    """Return x, and a place on either side of it, unless their distance in log x is 0."""
-    return np.unique(x * np.exp(beside * np.array([-1.0, 0.0, 1.0])))
+    """Return x, and places on either side of it up to a distance in log x, unless that is 0."""
+    return np.unique(x * np.exp(beside * np.linspace(-1, 1, 2 * tuning.SEARCH.places + 1)))
 
 
 class _Point(NamedTuple):

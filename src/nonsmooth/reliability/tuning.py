@@ -31,7 +31,10 @@ class Search:
 
     share: float = 0.1  # chosen: of P and of 1 - P, the largest error of W unless tol is given
     surest: float = 1e-9  # chosen: least distance of P from 1; nearer ones are not told apart
-    beside: float = 0.05  # chosen: distance in log T of two times at which W is known for nothing
+    # chosen: distance in log T of times at which W is known for nothing, and how many of them there
+    # are on either side of the first; with these, one is so near to the root that the slope does
+    beside: float = 0.08
+    places: int = 16
     farthest: float = 10.0  # chosen: largest factor of one step of the secant method
     first: float = 2.0  # chosen: largest factor to the first limits
     close: float = 0.1  # chosen: distance of W from P, over the error of W, at which it ends

@@ -39,8 +39,9 @@ def asymptotic_variance(
         returned with a warning.
     method : {"deterministic", "monte_carlo"}, optional
         Unless given, the one that should be the faster for `tol`; with four variables and no
-        `tol`, Monte Carlo. If it fails, the other method is tried, but Monte Carlo only if `tol`
-        is a percent or more, or not given and more accurate than what has been reached.
+        `tol`, Monte Carlo. If it fails, or would take many paths, the other method is tried, but
+        Monte Carlo last only if `tol` is a percent or more, or not given and more accurate than
+        what has been reached.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
@@ -72,14 +73,14 @@ def asymptotic_variance(
     if scene.primitive_variable is not None:
         way = f"g is a derivative in {scene.primitive_variable}"
         return Estimate(0.0, 0.0, way, time.perf_counter() - began)
-    ways = _fastest_first(scene, tol) if method is None else [method]
+    ways = _fastest_first(scene, tol) if method is None else [METHODS[method]]
 
     def error(found):
         return found[1] / found[0] if found[0] > 0 else math.inf
 
     def solve():
         return first_answer(
-            (partial(METHODS[name], scene, tol, seed, threads) for name in ways),
+            (partial(way, scene, tol, seed, threads) for way in ways),
             error=error,
             good_enough=lambda found: tol is None and error(found) <= MONTE_CARLO.tolerance,
         )
@@ -93,19 +94,21 @@ def asymptotic_variance(
 
 
 def _fastest_first(scene, tol):
+    """Choose the methods to try in turn: few paths may be the fastest, and many the last resort."""
     if not box.suits(scene):
-        return ["monte_carlo"]
-    accuracy = tuning.GAMMA2.tolerance[scene.dimension - 1] if tol is None else tol
-    if accuracy >= tuning.GAMMA2.faster_sampled[scene.dimension - 1]:
-        return ["monte_carlo", "deterministic"]
-    either = tol is None or tol >= MONTE_CARLO.tolerance
-    return ["deterministic", "monte_carlo"] if either else ["deterministic"]
+        return [_sampled]
+    chosen, kind = tuning.GAMMA2, scene.dimension - 1
+    accuracy = chosen.tolerance[kind] if tol is None else tol
+    loose = accuracy >= chosen.faster_sampled[kind]
+    few = [partial(_sampled, most=chosen.few_steps[kind])] if loose else []
+    many = [_sampled] if tol is None or tol >= MONTE_CARLO.tolerance else []
+    return [*few, _deterministic, *many]
 
 
-def _sampled(scene, tol, seed, threads):
+def _sampled(scene, tol, seed, threads, most=math.inf):
     accuracy = MONTE_CARLO.tolerance if tol is None else tol
     return answered(
-        lambda: sampled_gamma2(scene, accuracy, seed, threads),
+        lambda: sampled_gamma2(scene, accuracy, seed, threads, most),
         lambda found: (*found, "Monte Carlo"),
     )
 

@@ -145,7 +145,11 @@ def _bias_of_slope(biased, scene, times, sampling):
 
 
 def sampled_gamma2(
-    scene: Scene, tol: float, seed: int | tuple = 0, threads: int | None = None
+    scene: Scene,
+    tol: float,
+    seed: int | tuple = 0,
+    threads: int | None = None,
+    most: float = math.inf,
 ) -> tuple[float, float]:
     """Sample gamma^2 with as many paths and as short a step as a tolerance needs.
 
@@ -156,6 +160,9 @@ def sampled_gamma2(
         Relative; it bounds the bias of the step and three standard errors.
     seed : int or tuple
     threads : int, optional
+    most : float
+        Largest number of steps of all paths together. If more are needed, this raises an error
+        instead of trying.
 
     Returns
     -------
@@ -198,6 +205,8 @@ def sampled_gamma2(
         paths = max(paths, paths_for(math.sqrt(paths) * found.gamma2_error, allowed))
         fewer = max(fewer, math.ceil(fewer * share**2))
         step = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * allowed, order)
+        told, known = f"gamma^2 = {found.gamma2:.6g} has an error of {error:.1e}", found.gamma2
+        require_possible(paths, times[-1] / step, told, tol, most, (known, error))
     require(met, found.gamma2, error, tol)
     return found.gamma2, error
 

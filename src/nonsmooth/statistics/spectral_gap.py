@@ -214,10 +214,11 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
         If the slowest mode on the grid does not decay, as all modes of a scene do.
     """
     _, solver = tensor_grid.solver(scene, grid, scene.has_odd_drift())
-    slowest = []
+    slowest: list[tuple[float, float]] = []
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
         if isinstance(solver, AlternatingSolver):
-            rates, backward = _by_davidson(solver, parity, accuracy), accuracy
+            slower = tuning.SPECTRAL_GAP.apart * min(slowest)[0] if slowest else math.inf
+            rates, backward = _by_davidson(solver, parity, accuracy, slower), accuracy
         else:
             rates, backward = _by_arnoldi(solver, parity, accuracy), tuning.SPECTRAL_GAP.backward
         slowest.append(min((rate.real, _moved(rates, rate, backward)) for rate in rates))
@@ -246,8 +247,11 @@ def _by_arnoldi(solver, parity, accuracy):
     return 1 / largest[np.abs(largest) > 1e-12]
 
 
-def _by_davidson(solver, parity, accuracy):
-    """Compute slow rates where the inverse is known only approximately."""
+def _by_davidson(solver, parity, accuracy, slower):
+    """Compute slow rates where the inverse is known only approximately.
+
+    If the slowest is not below `slower`, it need not be accurate.
+    """
     chosen, scale = tuning.SPECTRAL_GAP, solver.scale
     return slow_rates(
         lambda values: -_centred(solver, parity, scale * solver.generator(values / scale, parity)),
@@ -260,6 +264,7 @@ def _by_davidson(solver, parity, accuracy):
         known=chosen.known,
         room=chosen.room,
         most=chosen.most,
+        slower=slower,
     )
 
 
