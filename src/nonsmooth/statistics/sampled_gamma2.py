@@ -1,13 +1,15 @@
 """gamma^2 by Monte Carlo, for every scene: the slope of the variance of int_0^t g.
 
 With D(t) = int_0^t g, Var D(t) = gamma^2 t + constant + an exponentially small rest. The slope of
-Var D between two times is free of the constant; Var D(t) / t is not.
+Var D between two times is free of the constant; Var D(t) / t is not. What is left of the rest at
+the first of these times is extrapolated from the slopes before it.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -71,6 +73,26 @@ class Slopes:
         )
 
 
+class _Rest(NamedTuple):
+    """A bound of what a slope still lacks, and whether more than noise was seen of it before."""
+
+    bound: float
+    seen: bool
+
+    def is_little(self, wanted: float) -> bool:
+        """Whether it hardly counts in an error of which so much is wanted."""
+        return not self.seen or self.bound <= tuning.SAMPLED_GAMMA2.rest_share * wanted
+
+
+class _Settled(NamedTuple):
+    """Slopes between times at which they have settled, and what is left of the rests."""
+
+    times: tuple[float, ...]
+    slopes: Slopes
+    gamma2_rest: _Rest
+    mean_rest: _Rest
+
+
 def _allowed(error, size):
     settled = tuning.SAMPLED_GAMMA2
     return max(settled.agreement_errors * error, settled.agreement * abs(size))
@@ -116,6 +138,39 @@ def _regressed(values, control):
     return float(rest.mean()), float(rest.std(ddof=1) / np.sqrt(len(values)))
 
 
+def _rest(before: list, last: tuple, width: float, span: float) -> _Rest:
+    """Bound the error of a slope that is approached exponentially.
+
+    With q the factor by which what is lacking falls over twice the width, the sums of it over two
+    neighbouring windows, the second twice as wide as the first, have the ratio sqrt(q) (1 +
+    sqrt(q)), and what follows them is q / (1 - q) times the second.
+
+    Parameters
+    ----------
+    before : list of (float, float)
+        Slopes and standard errors in the two windows that end where the last slope begins.
+    last : (float, float)
+        The same of the last slope.
+    width, span : float
+        Of the first window, and of the last slope.
+
+    Returns
+    -------
+    _Rest
+        Infinite where the slopes before do not approach the last one.
+    """
+    lacking = [abs(last[0] - slope) for slope, _ in before]
+    noise = [math.hypot(last[1], error) for _, error in before]
+    first, second = (
+        lack > MONTE_CARLO.sigmas * error for lack, error in zip(lacking, noise, strict=True)
+    )
+    left = (lacking[1] + noise[1]) * 2 * width / span
+    if not first:  # noise hides what is lacking, unless it comes late
+        return _Rest(math.inf if second else left, second)
+    root = (math.sqrt(1 + 8 * (lacking[1] + noise[1]) / lacking[0]) - 1) / 2
+    return _Rest(left * root**2 / (1 - root**2) if root < 1 else math.inf, True)
+
+
 def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tuple[float, float]:
     """Bias of gamma^2 by the time step, as measured by halving it, and its standard error.
 
@@ -157,7 +212,7 @@ def sampled_gamma2(
     ----------
     scene : Scene
     tol : float
-        Relative; it bounds the bias of the step and three standard errors.
+        Relative; it bounds the first two and three standard errors.
     seed : int or tuple
     threads : int, optional
     most : float
@@ -167,7 +222,7 @@ def sampled_gamma2(
     Returns
     -------
     value, error : float
-        The error is the bias of the step and the standard error together.
+        The error is the bias of the step, what has not settled, and the standard error together.
 
     Raises
     ------
@@ -181,16 +236,21 @@ def sampled_gamma2(
             "or method='deterministic'"
         )
     paths = fewer = MONTE_CARLO.pilot_paths
-    step = coarse_step(scene)
+    step, times = coarse_step(scene), first_times(scene)
     order = registry.scheme(scene).weak_order(scene)
+
+    def enough(run):
+        error = MONTE_CARLO.sigmas * run.slopes.gamma2_error
+        return run.gamma2_rest.is_little(max(tol * run.slopes.gamma2, error))
+
     for attempt in range(MONTE_CARLO.attempts):
         own = Sampling(step, paths, labelled(seed, attempt), threads=threads)
-        times, found = _settled(scene, own)
+        times, found, (rest, _), _ = _settled(scene, own, times, enough)
         halving = Sampling(step, fewer, labelled(own.seed, "halving"), threads=threads)
         bias, spread = gamma2_bias(scene, times, halving)
         deviation = float(np.hypot(found.gamma2_error, spread))
-        error = abs(bias) + deviation
-        met = abs(bias) + MONTE_CARLO.sigmas * deviation <= tol * found.gamma2
+        error = abs(bias) + rest + deviation
+        met = abs(bias) + rest + MONTE_CARLO.sigmas * deviation <= tol * found.gamma2
         if found.gamma2 < 5 * error and (met or attempt > 0):
             raise ToleranceError(
                 f"gamma^2 = {found.gamma2:.1e} with an error of {error:.1e} may be 0, which it is "
@@ -200,7 +260,7 @@ def sampled_gamma2(
             )
         if met:
             break
-        allowed = max(tol * found.gamma2, error / 2)
+        allowed = max(tol * found.gamma2 - rest, error / 2)
         share = MONTE_CARLO.sigmas * spread / (tuning.SAMPLED_GAMMA2.halving_share * allowed)
         paths = max(paths, paths_for(math.sqrt(paths) * found.gamma2_error, allowed))
         fewer = max(fewer, math.ceil(fewer * share**2))
@@ -220,15 +280,15 @@ def sampled_mean(
     ----------
     scene : Scene
     tol : float, optional
-        Absolute; it bounds the bias of the step and three standard errors. Unless given, a pilot is
-        all that is run.
+        Absolute; it bounds the first two and three standard errors. Unless given, a pilot is all
+        that is run.
     seed : int or tuple
     threads : int, optional
 
     Returns
     -------
     value, error : float
-        The error is the bias of the step and the standard error together.
+        The error is the bias of the step, what has not settled, and the standard error together.
 
     Raises
     ------
@@ -236,18 +296,24 @@ def sampled_mean(
         If `tol` is not met, or the slope of the variance does not settle.
     """
     own, paths, step = labelled(seed, "mean"), MONTE_CARLO.pilot_paths, short_step(scene)
+    times = first_times(scene)
     order = registry.scheme(scene).weak_order(scene)
+
+    def enough(run):
+        return run.mean_rest.is_little(max(tol or 0.0, MONTE_CARLO.sigmas * run.slopes.mean_error))
+
     for _ in range(MONTE_CARLO.attempts):
         sampling = Sampling(step, paths, own, threads=threads)
-        times, found = _settled(scene, sampling)
+        times, found, _, (rest, _) = _settled(scene, sampling, times, enough)
         halving = replace(sampling.labelled("halving"), paths=halving_paths(paths))
         bias, spread = _bias_of_slope(mean_bias, scene, times, halving)
         deviation = math.hypot(found.mean_error, spread)
-        error = abs(bias) + deviation
-        if tol is None or abs(bias) + MONTE_CARLO.sigmas * deviation <= tol:
+        error = abs(bias) + rest + deviation
+        if tol is None or abs(bias) + rest + MONTE_CARLO.sigmas * deviation <= tol:
             return found.mean, error
-        more = paths_for(math.sqrt(paths) * deviation, tol)
-        shorter = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * tol, order)
+        allowed = max(tol - rest, tol / 2)
+        more = paths_for(math.sqrt(paths) * deviation, allowed)
+        shorter = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * allowed, order)
         told = f"E g = {found.mean:.6g} has an error of {error:.1e}"
         known = found.mean, error
         require_possible(more, times[-1] / shorter, told, tol, result=known)
@@ -287,14 +353,16 @@ def first_times(scene: Scene) -> tuple[float, ...]:
     return tuple(max(1.0, settled.relaxed / (rate * first)) * t for t in settled.times)
 
 
-def _settled(scene, sampling):
+def _settled(scene, sampling, times, enough: Callable[[_Settled], bool]) -> _Settled:
     """Lengthen the times until the slope of the variance depends neither on them nor on the start.
+
+    What is left of the rests, of which the caller tells whether it is little enough, follows from
+    two windows before the first time, in the last three quarters of the way to it.
 
     Paths that never leave the well they start in settle, too, but on the wrong slope. To notice
     this, a few paths start from each well of the potentials (the scouts); all slopes have to agree.
     """
     elsewhere = [scene.with_start(start) for start in potential_wells.starts(scene)]
-    times = first_times(scene)
     for attempt in range(tuning.SAMPLED_GAMMA2.doublings):
         scouts = []
         own = sampling.labelled(attempt)
@@ -303,12 +371,13 @@ def _settled(scene, sampling):
             scouts = [slopes(integrals_at(other, times, few), times) for other in elsewhere]
         forgotten = all(a.agrees(b) for a, b in combinations(scouts, 2))
         if forgotten:
-            found = slopes(integrals_at(scene, times, own), times)
-            if found.settled and all(found.agrees(scout) for scout in scouts):
-                return times, found
+            run = _followed(integrals_at(scene, (times[0] / 4, times[0] / 2, *times), own), times)
+            found = run.slopes
+            if found.settled and all(found.agrees(scout) for scout in scouts) and enough(run):
+                return run
         times = tuple(2 * t for t in times)
     changes = (
-        f"{found.gamma2:.3g}, still changing by {found.settling:.1g}"
+        f"{found.gamma2:.3g}, still changing by {_change(run):.1g}"
         if forgotten
         else f"paths from {len(elsewhere)} wells of the potentials still differ"
     )
@@ -316,3 +385,23 @@ def _settled(scene, sampling):
         f"the growth rate of the variance has not settled by t = {times[-1] / 2:g}: {changes}; "
         "the scene mixes slowly, or int_0^t g has no such rate"
     )
+
+
+def _change(run):
+    """Largest change of the slope of the variance that was seen."""
+    return max(abs(run.slopes.settling), run.gamma2_rest.bound if run.gamma2_rest.seen else 0.0)
+
+
+def _followed(sample, times):
+    """Slopes of a sample at five times, and what is left of the rests, from the first windows."""
+    found, width = slopes(sample[2:], times), times[0] / 4
+    windows = [_slopes_between(sample[k : k + 2], (1 + k) * width) for k in (0, 1)]
+    span = times[-1] - times[0]
+    rests = [
+        _rest([window[k : k + 2] for window in windows], last, width, span)
+        for k, last in (
+            (0, (found.gamma2, found.gamma2_error)),
+            (2, (found.mean, found.mean_error)),
+        )
+    ]
+    return _Settled(times, found, *rests)

@@ -197,6 +197,8 @@ class SampledGamma2:
     # chosen: slopes agree within so many standard errors, or to this relative difference
     agreement_errors: float = 4.0
     agreement: float = 1e-3
+    # chosen: part of the tolerance, or of three standard errors, for what has not settled
+    rest_share: float = 0.1
     # chosen: part of the tolerance for the standard errors of the bias
     halving_share: float = 0.4
     # chosen: first step for a stationary mean, times the smaller of 1 and 1/C_b; its bias is about
