@@ -32,6 +32,7 @@ def combined(
     met: Callable[[Functional, Functional], bool],
     work: float,
     mixed: float,
+    alone: float = 1.0,
 ) -> tuple[Functional, Functional, bool]:
     """Add grids to a combination until its error is small enough.
 
@@ -48,7 +49,7 @@ def combined(
         Takes a value and its error; returns whether the error is small enough.
     work : float
         Cost of all grids together, at most.
-    mixed : float
+    mixed, alone : float
         As for `Combination`.
 
     Returns
@@ -72,6 +73,7 @@ def combined(
         evaluated,
         lambda index: math.inf if index in failed else cost(index),
         mixed,
+        alone,
     )
     with counter("grids") as advance:
         while not met(combination.value, combination.error):
@@ -102,6 +104,9 @@ class Combination:
     mixed : float, optional
         By how much surpluses are expected to be smaller than those of their parents where two or
         more variables are raised.
+    alone : float, optional
+        How many times the first surplus of a variable counts, as long as no other tells how they
+        fall; it may be small by chance.
 
     Attributes
     ----------
@@ -116,9 +121,10 @@ class Combination:
         evaluate: Callable[[Index], Functional],
         cost: Callable[[Index], float],
         mixed: float = tuning.COMBINATION_TECHNIQUE.mixed,
+        alone: float = 1.0,
     ):
         self._lowest, self._evaluate, self._cost = lowest, evaluate, cost
-        self._mixed = mixed
+        self._mixed, self._alone = mixed, alone
         self._values: dict[Index, Functional] = {}
         self._surplus: dict[Index, Functional] = {}
         self._missing: dict[Index, Functional] = {}
@@ -163,7 +169,7 @@ class Combination:
             surplus = self._surplus[parent]
             before = self._parent(parent, k)
             if before is None or before == self._lowest:
-                bounds.append(abs(surplus))
+                bounds.append(abs(surplus) * (1.0 if len(raised) > 1 else self._alone))
                 continue
             earlier = self._surplus[before]
             bounds.append(tuning.COMBINATION_TECHNIQUE.relapse * abs(earlier))

@@ -71,7 +71,7 @@ class Layers:
     corner: int = 3  # chosen: powers of the ratio by which these are smaller than a half width
     distinct: float = 1e-9  # chosen: relative distance below which two edges are one
     # chosen: elements of a half width on level 0, at most; layers that need more are not resolved
-    most: int = 24
+    most: int = 32
     rim: float = 0.05  # chosen: width of the constant elements at the ends, over the half width
 
 
