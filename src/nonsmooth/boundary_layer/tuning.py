@@ -26,11 +26,11 @@ class TwoVariables:
     coarsest: int = 2  # chosen: levels from which the combination is tried to start
     # chosen: work for one combination, in units of the largest grid; bounds the time
     work: float = 3.0
-    # how many times the first change by a variable counts; chosen: next to a soft wall it was a
+    # how many times the first change by a variable counts; chosen: next to a soft wall it is a
     # third of all that follows
     alone: float = 3.0
-    # chosen: grids that were asked for tol may agree better than any is right; the error is at
-    # least so much of tol
+    # chosen: changes between coarse grids may be small by chance; the error is at least so much of
+    # tol
     by_chance: float = 0.01
     zero: float = 1e-13  # |g| up to this counts as 0, relative; derived: above rounding of g
     # distance of a threshold over kappa; chosen: nearer, the orders 2 and 3 mean little

@@ -153,7 +153,7 @@ def _combined(scene, coarse, tol, higher):
     base = half_space.constants(scene, coarse, higher)
     allowed = _allowed(tol, base[0])[: len(base)]
     box = 2 * np.abs(half_space.constants(scene, coarse.enlarged(), higher) - base)
-    box += chosen.by_chance * allowed
+    others = box + chosen.by_chance * allowed
     lowest = tuple(coarse.levels.values())
 
     def on(index):
@@ -165,12 +165,12 @@ def _combined(scene, coarse, tol, higher):
         lowest,
         on,
         lambda index: (half_space.size(scene, coarse.with_levels(index)) / chosen.largest) ** 3,
-        lambda _, error: bool(np.all(error + box / allowed <= 1)),
+        lambda _, error: bool(np.all(error + others / allowed <= 1)),
         chosen.work,
         COMBINATION_TECHNIQUE.mixed_by_motion,
         chosen.alone,
     )
-    return (value * allowed, error * allowed + box), allowed, complete
+    return (value * allowed, error * allowed + others), allowed, complete
 
 
 def _interior(scene, tol, layer):

@@ -48,8 +48,7 @@ def slow_rates(
     most : int
         Number of vectors that are tried.
     slower : float
-        A real part below which the smallest one is of interest; if it is not, its residual is that
-        of the others.
+        If the smallest real part is not below this, its residual need only be that of the others.
 
     Returns
     -------

@@ -88,8 +88,8 @@ def crossing_threshold(
     xarray.Dataset
         Over `probability` and `horizon`, with the method among its attributes: `threshold`, b,
         "1"; its error `threshold_error`; `lower` and `upper`, between which it is. They invert the
-        limits of W: at `lower` W is at least P, and at `upper` at most P. By Monte Carlo they are
-        95 % confidence limits, as for W, and the error is that of W over its slope. Otherwise they
+        limits of W: at `lower` W is at least P, and at `upper` at most P. By Monte Carlo alone they
+        are 95 % confidence limits, as for W, and the error is that of W over its slope. Else they
         are told by the limits of W near by and its slope, or computed where errors hide the slope;
         the error is the distance to the farther limit. A limit is 0 or inf where the error of W
         leaves it open.
@@ -344,16 +344,15 @@ class _Question:
         def solved(wanted):
             known = {}
             missed.update(dict.fromkeys(wanted, True))
-            for tol in dict.fromkeys(tolerances[k] for k in wanted):
+            # the tightest last, which tells the method of all if paths are counted
+            for tol in sorted({tolerances[k] for k in wanted}, key=lambda tol: -(tol or 0.0)):
                 known |= together({k: x for k, x in wanted.items() if tolerances[k] == tol}, tol)
             # a root rests on the nearest value of all, not on others that miss the tolerance
             for k, values in known.items():
+                best = int(np.argmin(np.abs(values.probability - targets[k])))
                 wanted_at = equivalent(reference, targets[k], sense)
-                ways = [
-                    abs(equivalent(reference, W, sense) - wanted_at) for W in values.probability
-                ]
-                both = zip(ways, values.error.tolist(), strict=True)
-                nearest[k] = min(*both, nearest.get(k, (np.inf, np.inf)))
+                way = abs(equivalent(reference, values.probability[best], sense) - wanted_at)
+                nearest[k] = min((way, float(values.error[best])), nearest.get(k, (np.inf, np.inf)))
                 missed[k] = tolerances[k] is None or nearest[k][1] > tolerances[k]
             return known
 

@@ -164,7 +164,7 @@ def searched(
             return root  # with wider limits
         new = [
             _point(place, one, tol, lambda W: equivalent(reference, W, sense) - wanted)
-            for place, *one in zip(np.log(places), *values, strict=True)
+            for place, *one in _telling(np.log(places), values, target)
         ]
         points += new
         base = min(points, key=lambda point: abs(point.gap))
@@ -236,6 +236,14 @@ class _Point(NamedTuple):
     def error(self) -> float:
         """The larger distance to a limit."""
         return max(self.high - self.gap, self.gap - self.low)
+
+
+def _telling(places, values, target):
+    """Return few places with their values: those around the root, and the farthest ones."""
+    passed = np.flatnonzero(np.diff(values.probability < target))  # W may jump from 0 to 1
+    nearest = passed[0] if len(passed) else np.argmin(np.abs(values.probability - target))
+    chosen = np.unique(np.clip(nearest + np.array(tuning.SEARCH.telling), 0, len(places) - 1))
+    return zip(*(part[chosen] for part in (places, *values)), strict=True)
 
 
 def _point(place, values, tol, distance):

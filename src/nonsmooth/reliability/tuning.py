@@ -35,6 +35,8 @@ class Search:
     # are on either side of the first; with these, one is so near to the root that the slope does
     beside: float = 0.08
     places: int = 16
+    # chosen: which of them, from the one that is nearest to the root, tell the slope
+    telling: tuple[int, ...] = (-32, -6, -3, -1, 0, 1, 3, 6, 32)
     farthest: float = 10.0  # chosen: largest factor of one step of the secant method
     first: float = 2.0  # chosen: largest factor to the first limits
     close: float = 0.1  # chosen: distance of W from P, over the error of W, at which it ends
@@ -67,7 +69,9 @@ class Grid:
     values: int = 33  # chosen: of the second pass; their spacing is part of the stated interval
     margin: float = 0.5  # chosen: of the second pass beyond the interval of the first, over it
     attempts: int = 6  # chosen: shifts of a pass that does not contain the root
-    least_paths: int = 1000  # chosen: milliseconds; a few do not tell the bias of the step
+    least_paths: int = (
+        1000  # chosen: of a pass; milliseconds, and fewer hardly tell the step's bias
+    )
     most_paths: float = 1e8  # chosen: minutes, and gigabytes for the bias of the step
 
 

@@ -39,9 +39,10 @@ def asymptotic_variance(
         returned with a warning.
     method : {"deterministic", "monte_carlo"}, optional
         Unless given, the one that should be the faster for `tol`; with four variables and no
-        `tol`, Monte Carlo. If it fails, or would take many paths, the other method is tried, but
-        Monte Carlo last only if `tol` is a percent or more, or not given and more accurate than
-        what has been reached.
+        `tol`, Monte Carlo. If it fails, or would take many paths, the other method is tried.
+        Monte Carlo with many paths comes last, for a `tol` that is a percent or more, or a third
+        of that with four variables; or if none is given and it is more accurate than what has been
+        reached.
     seed, threads
         For Monte Carlo: an int or a tuple; the number of threads, all cores unless given.
 
@@ -52,8 +53,8 @@ def asymptotic_variance(
         along paths, as g = y with obstacles is: int_0^t g stays bounded then, and another g, such
         as x, tells more. Deterministic for the state y with white noise by closed form
         (dry friction, g = y) or quadrature, in every other scene by spectral elements. By Monte
-        Carlo the error is the bias of the time step and the standard error together; `tol` bounds
-        the bias and three standard errors.
+        Carlo the error is the bias of the time step, what has not settled, and the standard error
+        together; `tol` bounds the former two and three standard errors.
 
     Raises
     ------
@@ -101,7 +102,7 @@ def _fastest_first(scene, tol):
     accuracy = chosen.tolerance[kind] if tol is None else tol
     loose = accuracy >= chosen.faster_sampled[kind]
     few = [partial(_sampled, most=chosen.few_steps[kind])] if loose else []
-    many = [_sampled] if tol is None or tol >= MONTE_CARLO.tolerance else []
+    many = [_sampled] if loose or tol is None or tol >= MONTE_CARLO.tolerance else []
     return [*few, _deterministic, *many]
 
 

@@ -74,19 +74,23 @@ class Slopes:
 
 
 class _Rest(NamedTuple):
-    """A bound of what a slope still lacks, and whether more than noise was seen of it before."""
+    """What a slope still lacks, and whether more than noise was seen of it before."""
 
-    bound: float
+    size: float
     seen: bool
 
     def is_little(self, wanted: float) -> bool:
         """Whether it hardly counts in an error of which so much is wanted."""
-        return not self.seen or self.bound <= tuning.SAMPLED_GAMMA2.rest_share * wanted
+        return not self.seen or self.size <= tuning.SAMPLED_GAMMA2.rest_share * wanted
 
 
 class _Settled(NamedTuple):
-    """Slopes between times at which they have settled, and what is left of the rests."""
+    """Slopes between times at which they have settled, and what is left of the rests.
 
+    The times are `doubled` so many times.
+    """
+
+    doubled: int
     times: tuple[float, ...]
     slopes: Slopes
     gamma2_rest: _Rest
@@ -139,7 +143,7 @@ def _regressed(values, control):
 
 
 def _rest(before: list, last: tuple, width: float, span: float) -> _Rest:
-    """Bound the error of a slope that is approached exponentially.
+    """Estimate what a slope lacks that is approached as by one exponential.
 
     With q the factor by which what is lacking falls over twice the width, the sums of it over two
     neighbouring windows, the second twice as wide as the first, have the ratio sqrt(q) (1 +
@@ -157,18 +161,23 @@ def _rest(before: list, last: tuple, width: float, span: float) -> _Rest:
     Returns
     -------
     _Rest
-        Infinite where the slopes before do not approach the last one.
+        With noise for what it hides. Infinite where the slopes before do not approach the last one.
     """
-    lacking = [abs(last[0] - slope) for slope, _ in before]
-    noise = [math.hypot(last[1], error) for _, error in before]
-    first, second = (
-        lack > MONTE_CARLO.sigmas * error for lack, error in zip(lacking, noise, strict=True)
-    )
-    left = (lacking[1] + noise[1]) * 2 * width / span
-    if not first:  # noise hides what is lacking, unless it comes late
+    apart = np.array([abs(last[0] - slope) for slope, _ in before])
+    noise = np.array([math.hypot(last[1], error) for _, error in before])
+    first, second = (apart > MONTE_CARLO.sigmas * noise).tolist()
+    if not first:
+        # half of what noise hides is taken to be left a window later, unless it comes late
+        left = float(apart[1] + noise[1]) * 2 * width / span
         return _Rest(math.inf if second else left, second)
-    root = (math.sqrt(1 + 8 * (lacking[1] + noise[1]) / lacking[0]) - 1) / 2
-    return _Rest(left * root**2 / (1 - root**2) if root < 1 else math.inf, True)
+    size = 0.0
+    for _ in range(tuning.SAMPLED_GAMMA2.rounds):
+        lacking = apart + size  # the last slope lacks it, too
+        root = (math.sqrt(1 + 8 * (lacking[1] + noise[1]) / lacking[0]) - 1) / 2
+        if not root < 1:
+            return _Rest(math.inf, True)
+        size = (lacking[1] + noise[1]) * 2 * width / span * root**2 / (1 - root**2)
+    return _Rest(float(size), True)
 
 
 def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tuple[float, float]:
@@ -212,12 +221,13 @@ def sampled_gamma2(
     ----------
     scene : Scene
     tol : float
-        Relative; it bounds the first two and three standard errors.
+        Relative; it bounds the bias of the step, what has not settled, and three standard errors.
     seed : int or tuple
     threads : int, optional
     most : float
-        Largest number of steps of all paths together. If more are needed, this raises an error
-        instead of trying.
+        Largest number of steps of all paths together, those that measure the bias among them, as
+        far as it is foreseen from a pilot. If more are needed, this raises an error instead of
+        trying.
 
     Returns
     -------
@@ -236,7 +246,7 @@ def sampled_gamma2(
             "or method='deterministic'"
         )
     paths = fewer = MONTE_CARLO.pilot_paths
-    step, times = coarse_step(scene), first_times(scene)
+    step, doubled = coarse_step(scene), 0
     order = registry.scheme(scene).weak_order(scene)
 
     def enough(run):
@@ -245,7 +255,7 @@ def sampled_gamma2(
 
     for attempt in range(MONTE_CARLO.attempts):
         own = Sampling(step, paths, labelled(seed, attempt), threads=threads)
-        times, found, (rest, _), _ = _settled(scene, own, times, enough)
+        doubled, times, found, (rest, _), _ = _settled(scene, own, doubled, enough)
         halving = Sampling(step, fewer, labelled(own.seed, "halving"), threads=threads)
         bias, spread = gamma2_bias(scene, times, halving)
         deviation = float(np.hypot(found.gamma2_error, spread))
@@ -266,7 +276,8 @@ def sampled_gamma2(
         fewer = max(fewer, math.ceil(fewer * share**2))
         step = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * allowed, order)
         told, known = f"gamma^2 = {found.gamma2:.6g} has an error of {error:.1e}", found.gamma2
-        require_possible(paths, times[-1] / step, told, tol, most, (known, error))
+        # a path that measures the bias runs with the step and with its half
+        require_possible(paths + 3 * fewer, times[-1] / step, told, tol, most, (known, error))
     require(met, found.gamma2, error, tol)
     return found.gamma2, error
 
@@ -280,8 +291,8 @@ def sampled_mean(
     ----------
     scene : Scene
     tol : float, optional
-        Absolute; it bounds the first two and three standard errors. Unless given, a pilot is all
-        that is run.
+        Absolute; it bounds the bias of the step, what has not settled, and three standard errors.
+        Unless given, a pilot is all that is run.
     seed : int or tuple
     threads : int, optional
 
@@ -296,7 +307,7 @@ def sampled_mean(
         If `tol` is not met, or the slope of the variance does not settle.
     """
     own, paths, step = labelled(seed, "mean"), MONTE_CARLO.pilot_paths, short_step(scene)
-    times = first_times(scene)
+    doubled = 0
     order = registry.scheme(scene).weak_order(scene)
 
     def enough(run):
@@ -304,7 +315,7 @@ def sampled_mean(
 
     for _ in range(MONTE_CARLO.attempts):
         sampling = Sampling(step, paths, own, threads=threads)
-        times, found, _, (rest, _) = _settled(scene, sampling, times, enough)
+        doubled, times, found, _, (rest, _) = _settled(scene, sampling, doubled, enough)
         halving = replace(sampling.labelled("halving"), paths=halving_paths(paths))
         bias, spread = _bias_of_slope(mean_bias, scene, times, halving)
         deviation = math.hypot(found.mean_error, spread)
@@ -353,46 +364,50 @@ def first_times(scene: Scene) -> tuple[float, ...]:
     return tuple(max(1.0, settled.relaxed / (rate * first)) * t for t in settled.times)
 
 
-def _settled(scene, sampling, times, enough: Callable[[_Settled], bool]) -> _Settled:
+def _settled(scene, sampling, begun: int, enough: Callable[[_Settled], bool]) -> _Settled:
     """Lengthen the times until the slope of the variance depends neither on them nor on the start.
 
-    What is left of the rests, of which the caller tells whether it is little enough, follows from
-    two windows before the first time, in the last three quarters of the way to it.
+    They are doubled, `begun` times at first. What is left of the rests, of which the caller tells
+    whether it is little enough, follows from two windows before the first time, in the last three
+    quarters of the way to it.
 
     Paths that never leave the well they start in settle, too, but on the wrong slope. To notice
     this, a few paths start from each well of the potentials (the scouts); all slopes have to agree.
     """
     elsewhere = [scene.with_start(start) for start in potential_wells.starts(scene)]
-    for attempt in range(tuning.SAMPLED_GAMMA2.doublings):
+    first = first_times(scene)
+    for doubled in range(begun, tuning.SAMPLED_GAMMA2.doublings):
+        times = tuple(2**doubled * t for t in first)
         scouts = []
-        own = sampling.labelled(attempt)
+        own = sampling.labelled(doubled)
         if len(elsewhere) > 1:
             few = replace(own, paths=tuning.SAMPLED_GAMMA2.scouts)
             scouts = [slopes(integrals_at(other, times, few), times) for other in elsewhere]
         forgotten = all(a.agrees(b) for a, b in combinations(scouts, 2))
         if forgotten:
-            run = _followed(integrals_at(scene, (times[0] / 4, times[0] / 2, *times), own), times)
+            sample = integrals_at(scene, (times[0] / 4, times[0] / 2, *times), own)
+            run = _followed(sample, times, doubled)
             found = run.slopes
             if found.settled and all(found.agrees(scout) for scout in scouts) and enough(run):
                 return run
-        times = tuple(2 * t for t in times)
     changes = (
         f"{found.gamma2:.3g}, still changing by {_change(run):.1g}"
         if forgotten
         else f"paths from {len(elsewhere)} wells of the potentials still differ"
     )
     raise ToleranceError(
-        f"the growth rate of the variance has not settled by t = {times[-1] / 2:g}: {changes}; "
+        f"the growth rate of the variance has not settled by t = {times[-1]:g}: {changes}; "
         "the scene mixes slowly, or int_0^t g has no such rate"
     )
 
 
 def _change(run):
     """Largest change of the slope of the variance that was seen."""
-    return max(abs(run.slopes.settling), run.gamma2_rest.bound if run.gamma2_rest.seen else 0.0)
+    rest, seen = run.gamma2_rest
+    return max(abs(run.slopes.settling), rest if seen and math.isfinite(rest) else 0.0)
 
 
-def _followed(sample, times):
+def _followed(sample, times, doubled):
     """Slopes of a sample at five times, and what is left of the rests, from the first windows."""
     found, width = slopes(sample[2:], times), times[0] / 4
     windows = [_slopes_between(sample[k : k + 2], (1 + k) * width) for k in (0, 1)]
@@ -404,4 +419,8 @@ def _followed(sample, times):
             (2, (found.mean, found.mean_error)),
         )
     ]
-    return _Settled(times, found, *rests)
+    # of several exponentials the slowest shows between both halves
+    beyond = abs(found.settling) - MONTE_CARLO.sigmas * found.settling_error
+    if beyond / 2 > rests[0].size:
+        rests[0] = _Rest(beyond / 2, True)
+    return _Settled(doubled, times, found, *rests)

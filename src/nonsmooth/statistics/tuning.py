@@ -130,8 +130,8 @@ class SpectralGap:
     unresolved_safety: float = 3.0
     loosest: float = 2e-5  # chosen: residual of modes on grids that are solved directly, at most
     known: float = 3e-2  # chosen: residual of modes other than the slowest, which are to be seen
-    # chosen: modes of a parity are others if the slowest is faster than that of the other parity by
-    # so much, above what such residuals leave open
+    # chosen: modes of the second parity are others if the slowest decays so many times as fast as
+    # that of the first; such residuals move the rates of most scenes by less
     apart: float = 1.3
     room: int = 80  # chosen: vectors that the iteration for three and four variables keeps
     most: int = 600  # chosen: vectors after which it gives up
@@ -171,7 +171,7 @@ class Gamma2:
     # chosen: relative; what the deterministic methods reach within about a minute
     tolerance: tuple[float, ...] = (1e-10, 1e-6, 2e-4, 3e-3)
     # fitted: benchmarks/requests.py; from these tolerances on Monte Carlo is the faster, unless it
-    # takes more than so many steps of all paths together: a second, and ten
+    # takes more than so many steps of all paths together: about a second, and ten
     faster_sampled: tuple[float, ...] = (math.inf, math.inf, 1e-2, 3e-3)
     few_steps: tuple[float, ...] = (0.0, 0.0, 3e8, 3e9)
 
@@ -199,6 +199,7 @@ class SampledGamma2:
     agreement: float = 1e-3
     # chosen: part of the tolerance, or of three standard errors, for what has not settled
     rest_share: float = 0.1
+    rounds: int = 3  # chosen: of its extrapolation; then it is known to some per cent
     # chosen: part of the tolerance for the standard errors of the bias
     halving_share: float = 0.4
     # chosen: first step for a stationary mean, times the smaller of 1 and 1/C_b; its bias is about

@@ -44,6 +44,20 @@ def test_the_error_bounds_the_limit(rates):
     assert combination.error > 0
 
 
+@pytest.mark.parametrize("rates", [(0.7,), (0.74, 0.3)])
+def test_the_first_surplus_may_count_more(rates):
+    """Three times it bounds what follows if surpluses shrink to three quarters."""
+    functional = product(*rates)
+    lowest = (1,) * len(rates)
+    combination = Combination(
+        lowest, functional(lowest), functional, lambda i: 2.0 ** sum(i), alone=3.0
+    )
+    assert combination.error == float("inf")
+    for _ in rates:
+        combination.refine(float("inf"))
+    assert abs(combination.value - 1) <= combination.error < float("inf")
+
+
 def test_levels_are_raised_where_they_matter():
     """A variable that converges at once is raised no further than to see that."""
     functional = product(0.5, 1e-6)

@@ -20,7 +20,7 @@ def operator(seed, coupling=0.3):
     return matrix, np.linalg.inv(matrix)
 
 
-def found(matrix, rough, accuracy, room=80, most=600):
+def found(matrix, rough, accuracy, room=80, most=600, **given):
     """Compute the slow rates of a matrix with a rough inverse."""
     return slow_rates(
         lambda vector: matrix @ vector,
@@ -31,6 +31,7 @@ def found(matrix, rough, accuracy, room=80, most=600):
         known=3e-2,
         room=room,
         most=most,
+        **given,
     )
 
 
@@ -72,3 +73,13 @@ def test_a_useless_preconditioner_is_noticed():
     for useless in (np.eye(len(inverse)), turned):
         with pytest.raises(np.linalg.LinAlgError, match="among 40 vectors"):
             found(matrix, useless, 1e-9, most=40)
+
+
+def test_rates_that_are_not_slow_enough_need_not_be_accurate():
+    """The residual is that of the other modes then; otherwise nothing changes."""
+    matrix, inverse = operator(3)
+    rough = inverse + 0.3 * np.diag(np.diag(inverse))
+    usual = found(matrix, rough, 1e-9)
+    assert np.array_equal(found(matrix, rough, 1e-9, slower=1.0), usual)
+    quick = found(matrix, rough, 1e-9, slower=0.1)
+    assert 1e-7 < abs(quick[0] - usual[0]) < 0.1

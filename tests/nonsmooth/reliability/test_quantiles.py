@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy import optimize
 
 import nonsmooth as ns
@@ -43,6 +44,41 @@ def test_at_large_p_the_threshold_is_that_of_brownian_motion(sides):
             ).squeeze()
             assert found["lower"] - 1e-4 < exact < found["upper"] + 1e-4
             assert abs(found["threshold"] - exact) < 1e-4
+
+
+def test_paths_do_not_serve_all_horizons_because_the_shortest_takes_them(monkeypatch):
+    """Their number is that of the longest horizon, where solving is the faster."""
+    given = []
+
+    def crossing(scene, levels, horizons, method=None, tol=None, **_):
+        given.append(method)
+        W = np.array([ns.brownian_crossing(b, horizons, a) for a, b in np.atleast_2d(levels)])
+        part = {"probability": W, "lower": W - 1e-6, "upper": W + 1e-6}
+        part["probability_error"] = np.full_like(W, 1e-6)
+        values = {name: (("threshold", "horizon"), value) for name, value in part.items()}
+        quick = "monte_carlo" if horizons[-1] < 1 else "deterministic"
+        return xr.Dataset(values, attrs={"method": method or quick})
+
+    monkeypatch.setattr(quantiles, "crossing_probability", crossing)
+    found = ns.crossing_threshold(FRICTION, 0.2, [0.5, 2.0], tol=1e-3)
+    for b, T in zip(found["threshold"].values[0], (0.5, 2.0), strict=True):
+        assert abs(float(ns.brownian_crossing(b, T)) - 0.2) < 1e-5
+    assert set(given) == {None}
+
+
+def test_one_curve_tells_a_time(monkeypatch):
+    """W at many times costs what it costs at one: those near the guess are enough."""
+    asked = []
+
+    def crossing(*question, **options):
+        asked.append(question)
+        return ns.crossing_probability(*question, **options)
+
+    monkeypatch.setattr(quantiles, "crossing_probability", crossing)
+    found = ns.failure_time(FRICTION, 0.6, 0.3, tol=1e-5).squeeze()
+    assert len(asked) == 1
+    W = ns.crossing_probability(FRICTION, 0.6, [float(found["time"])], tol=1e-7)
+    assert abs(W["probability"].item() - 0.3) < 1e-5
 
 
 def test_sampled_threshold_and_time_agree_with_the_deterministic_ones():

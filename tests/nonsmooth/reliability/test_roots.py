@@ -5,6 +5,7 @@ import pytest
 from scipy import stats
 
 import nonsmooth as ns
+from nonsmooth.reliability import tuning
 from nonsmooth.reliability.roots import (
     FALLING,
     RISING,
@@ -149,14 +150,14 @@ def test_places_beside_the_guess_save_calls(tol, most, wrong, warp):
         part = min(target, 1 - target)
         shown, reference = brownian(relative * part, wrong, RISING, warp), REFERENCE[RISING]
         start = brownian(1e-13, 0.0, RISING, warp), reference, target, (1.0, 1.0), RISING
-        guess = solved_root(*start).value * np.exp(rng.uniform(-0.04, 0.04))
+        guess = solved_root(*start).value * np.exp(rng.uniform(-0.06, 0.06))
         calls = []
 
         def evaluate(wanted, calls=calls, shown=shown):
             calls.append(wanted)
             return {k: shown(x) for k, x in wanted.items()}
 
-        search = searched(reference, target, (guess, 1.0), RISING, tol * part, beside=0.05)
+        search = searched(reference, target, (guess, 1.0), RISING, tol * part, tuning.SEARCH.beside)
         (root,) = solved_roots([search], evaluate)
         assert len(calls) <= most
         assert inside(root, target, RISING, warp)
