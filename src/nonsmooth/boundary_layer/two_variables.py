@@ -48,8 +48,8 @@ def layer_constants(
     Returns
     -------
     constants, errors : LayerConstants
-        The errors are what grids beyond those combined may add (`Combination.error`), and twice
-        what a larger box changes.
+        The errors are what grids beyond those combined may add (`Combination.error`), twice what a
+        larger box changes, and a part of the tolerance.
 
     Raises
     ------

@@ -55,8 +55,8 @@ def mean(
     Estimate
         Exactly 0 by symmetry, or if g is the derivative of a function of the state along paths.
         For the state y with white noise the error is that of the quadrature, else that of the
-        grids. By Monte Carlo it is the bias of the time step and the standard error together; `tol`
-        bounds the bias and three standard errors.
+        grids. By Monte Carlo it is the bias of the time step, what has not settled, and the
+        standard error together; `tol` bounds the former two and three standard errors.
 
     Raises
     ------
