@@ -44,7 +44,7 @@ def slow_rates(
     known : float
         Residual of the others, relative.
     room : int
-        Number of vectors that are kept, more than four times `wanted`; each takes 2 n numbers.
+        Number of vectors that are kept, more than twice `wanted`; each takes 2 n numbers.
     most : int
         Number of vectors that are tried.
     slower : float
@@ -76,7 +76,7 @@ def slow_rates(
             return rates
         parts = [residual.real, residual.imag] if residual.imag.any() else [residual.real]
         if space.size + len(parts) > room:
-            space.reduce(room // 4)
+            space.reduce(room // 2)
         for part in parts:
             vector = precondition(part / np.linalg.norm(part))
             space.add(vector, apply(vector))

@@ -218,7 +218,10 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
         if isinstance(solver, AlternatingSolver):
             slower = tuning.SPECTRAL_GAP.apart * min(slowest)[0] if slowest else math.inf
-            rates, backward = _by_davidson(solver, parity, accuracy, slower), accuracy
+            rates, backward = (
+                _by_davidson(solver, parity, accuracy, slower, scene.dimension),
+                accuracy,
+            )
         else:
             rates, backward = _by_arnoldi(solver, parity, accuracy), tuning.SPECTRAL_GAP.backward
         slowest.append(min((rate.real, _moved(rates, rate, backward)) for rate in rates))
@@ -247,7 +250,7 @@ def _by_arnoldi(solver, parity, accuracy):
     return 1 / largest[np.abs(largest) > 1e-12]
 
 
-def _by_davidson(solver, parity, accuracy, slower):
+def _by_davidson(solver, parity, accuracy, slower, dimension):
     """Compute slow rates where the inverse is known only approximately.
 
     If the slowest is not below `slower`, it need not be accurate.
@@ -262,7 +265,7 @@ def _by_davidson(solver, parity, accuracy, slower):
         chosen.fewer,
         accuracy,
         known=chosen.known,
-        room=chosen.room,
+        room=chosen.room[dimension],
         most=chosen.most,
         slower=slower,
     )

@@ -133,7 +133,8 @@ class SpectralGap:
     # chosen: modes of the second parity are others if the slowest decays so many times as fast as
     # that of the first; such residuals move the rates of most scenes by less
     apart: float = 1.3
-    room: int = 80  # chosen: vectors that the iteration for three and four variables keeps
+    # chosen: vectors that the iteration for three and four variables keeps, some 100 megabytes
+    room: Mapping[int, int] = field(default_factory=lambda: {2: 140, 3: 140, 4: 80})
     most: int = 600  # chosen: vectors after which it gives up
     # chosen: levels of the first grids of those that are combined
     first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 1, 4: 0})

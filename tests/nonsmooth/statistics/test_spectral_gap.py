@@ -110,3 +110,12 @@ def test_the_nonsmooth_limit(model, n):
     limit, stiff = ns.spectral_gap(scene.with_n(np.inf), 1e-5), ns.spectral_gap(scene, 1e-5)
     rest = n ** (-0.5 if model == "obstacle" else -1.0)
     assert abs(limit.value - stiff.value) <= limit.error + stiff.error + 2 * rest
+
+
+@pytest.mark.slow
+def test_modes_of_the_other_parity_need_not_settle():
+    """On a larger box those of even functions do not, which decay twice as fast as the slowest."""
+    noise = ns.Langevin(potential="1.46464*eta**2/2", sigma=0.73412)
+    scene = ns.Scene("obstacle", noise, 19.924, 0.83708, potential="x**2/2", observable="x")
+    loose, tight = ns.spectral_gap(scene, 3e-2), ns.spectral_gap(scene, 1e-3)
+    assert abs(loose.value - tight.value) <= loose.error + tight.error

@@ -158,3 +158,16 @@ def test_loose_tolerances_are_within_their_errors(n, finest):
         for name in ("density_y", "density_x", "density_y_x"):
             allowed = loose[f"{name}_error"] + fine[f"{name}_error"]
             assert bool((abs(loose[name] - fine[name]) <= allowed).all())
+
+
+@pytest.mark.slow
+def test_a_thin_layer_is_resolved_in_deeper_boxes_too():
+    """What is met to a per cent is not refused to a tenth of it, and agrees."""
+    scene = ns.Scene("elasto_plastic", ns.White(0.87), n=900, damping=1.3, potential="x**2/2")
+    points = {"x": [0.0, 0.5], "y": [0.0, 0.5]}
+    loose, tight = (
+        ns.invariant_density(scene, tol, points, method="deterministic") for tol in (1e-2, 1e-3)
+    )
+    for name in ("density_x", "density_y", "density_y_x"):
+        stated = loose[f"{name}_error"] + tight[f"{name}_error"]
+        assert np.all(abs(loose[name] - tight[name]) <= stated)
