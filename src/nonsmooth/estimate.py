@@ -20,7 +20,8 @@ class Estimate:
     ----------
     value : float
     error : float
-        Absolute: an estimated bound if the method is deterministic, else the standard error.
+        Absolute: an estimated bound if the method is deterministic, else the standard error, with
+        what else is not exact.
     method : str
         Name of the method that found it.
     seconds : float

@@ -344,7 +344,7 @@ class _Question:
         def solved(wanted):
             known = {}
             missed.update(dict.fromkeys(wanted, True))
-            # the tightest last, which tells the method of all if paths are counted
+            # the tightest last: its method decides whether paths are counted
             for tol in sorted({tolerances[k] for k in wanted}, key=lambda tol: -(tol or 0.0)):
                 known |= together({k: x for k, x in wanted.items() if tolerances[k] == tol}, tol)
             # a root rests on the nearest value of all, not on others that miss the tolerance

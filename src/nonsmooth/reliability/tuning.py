@@ -69,9 +69,8 @@ class Grid:
     values: int = 33  # chosen: of the second pass; their spacing is part of the stated interval
     margin: float = 0.5  # chosen: of the second pass beyond the interval of the first, over it
     attempts: int = 6  # chosen: shifts of a pass that does not contain the root
-    least_paths: int = (
-        1000  # chosen: of a pass; milliseconds, and fewer hardly tell the step's bias
-    )
+    # chosen: paths of a pass, at least; milliseconds, and a few hardly tell the bias of the step
+    least_paths: int = 1000
     most_paths: float = 1e8  # chosen: minutes, and gigabytes for the bias of the step
 
 

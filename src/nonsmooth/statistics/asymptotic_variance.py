@@ -20,6 +20,8 @@ from nonsmooth.scenes.scene import Scene, require_scene, require_velocity
 from nonsmooth.statistics import gamma2_on_grids, tuning
 from nonsmooth.statistics.sampled_gamma2 import sampled_gamma2
 
+SAMPLED = "Monte Carlo"
+
 
 def asymptotic_variance(
     scene: Scene,
@@ -83,7 +85,9 @@ def asymptotic_variance(
         return first_answer(
             (partial(way, scene, tol, seed, threads) for way in ways),
             error=error,
-            good_enough=lambda found: tol is None and error(found) <= MONTE_CARLO.tolerance,
+            good_enough=lambda found: (
+                tol is None and found[2] != SAMPLED and error(found) <= MONTE_CARLO.tolerance
+            ),
         )
 
     def present(found):
@@ -110,7 +114,7 @@ def _sampled(scene, tol, seed, threads, most=math.inf):
     accuracy = MONTE_CARLO.tolerance if tol is None else tol
     return answered(
         lambda: sampled_gamma2(scene, accuracy, seed, threads, most),
-        lambda found: (*found, "Monte Carlo"),
+        lambda found: (*found, SAMPLED),
     )
 
 

@@ -73,8 +73,14 @@ class Slopes:
         )
 
 
-class _Rest(NamedTuple):
-    """What a slope still lacks, and whether more than noise was seen of it before."""
+class Rest(NamedTuple):
+    """What a slope still lacks, and whether more than noise was seen of it before.
+
+    Attributes
+    ----------
+    size : float
+    seen : bool
+    """
 
     size: float
     seen: bool
@@ -93,8 +99,8 @@ class _Settled(NamedTuple):
     doubled: int
     times: tuple[float, ...]
     slopes: Slopes
-    gamma2_rest: _Rest
-    mean_rest: _Rest
+    gamma2_rest: Rest
+    mean_rest: Rest
 
 
 def _allowed(error, size):
@@ -142,8 +148,8 @@ def _regressed(values, control):
     return float(rest.mean()), float(rest.std(ddof=1) / np.sqrt(len(values)))
 
 
-def _rest(before: list, last: tuple, width: float, span: float) -> _Rest:
-    """Estimate what a slope lacks that is approached as by one exponential.
+def remaining(before: list, last: tuple, width: float, span: float) -> Rest:
+    """Estimate what a slope lacks of its limit, if it is approached as by one real exponential.
 
     With q the factor by which what is lacking falls over twice the width, the sums of it over two
     neighbouring windows, the second twice as wide as the first, have the ratio sqrt(q) (1 +
@@ -160,24 +166,26 @@ def _rest(before: list, last: tuple, width: float, span: float) -> _Rest:
 
     Returns
     -------
-    _Rest
-        With noise for what it hides. Infinite where the slopes before do not approach the last one.
+    Rest
+        Noise is added, for what it may hide. Infinite where the slopes before do not approach the
+        last one.
     """
     apart = np.array([abs(last[0] - slope) for slope, _ in before])
     noise = np.array([math.hypot(last[1], error) for _, error in before])
     first, second = (apart > MONTE_CARLO.sigmas * noise).tolist()
     if not first:
-        # half of what noise hides is taken to be left a window later, unless it comes late
+        # half of what noise hides is taken to be left a window later; what shows in the second
+        # window only does not fall
         left = float(apart[1] + noise[1]) * 2 * width / span
-        return _Rest(math.inf if second else left, second)
+        return Rest(math.inf if second else left, second)
     size = 0.0
     for _ in range(tuning.SAMPLED_GAMMA2.rounds):
         lacking = apart + size  # the last slope lacks it, too
         root = (math.sqrt(1 + 8 * (lacking[1] + noise[1]) / lacking[0]) - 1) / 2
         if not root < 1:
-            return _Rest(math.inf, True)
+            return Rest(math.inf, True)
         size = (lacking[1] + noise[1]) * 2 * width / span * root**2 / (1 - root**2)
-    return _Rest(float(size), True)
+    return Rest(float(size), True)
 
 
 def gamma2_bias(scene: Scene, times: Sequence[float], sampling: Sampling) -> tuple[float, float]:
@@ -413,7 +421,7 @@ def _followed(sample, times, doubled):
     windows = [_slopes_between(sample[k : k + 2], (1 + k) * width) for k in (0, 1)]
     span = times[-1] - times[0]
     rests = [
-        _rest([window[k : k + 2] for window in windows], last, width, span)
+        remaining([window[k : k + 2] for window in windows], last, width, span)
         for k, last in (
             (0, (found.gamma2, found.gamma2_error)),
             (2, (found.mean, found.mean_error)),
@@ -422,5 +430,5 @@ def _followed(sample, times, doubled):
     # of several exponentials the slowest shows between both halves
     beyond = abs(found.settling) - MONTE_CARLO.sigmas * found.settling_error
     if beyond / 2 > rests[0].size:
-        rests[0] = _Rest(beyond / 2, True)
+        rests[0] = Rest(beyond / 2, True)
     return _Settled(doubled, times, found, *rests)

@@ -130,8 +130,8 @@ class SpectralGap:
     unresolved_safety: float = 3.0
     loosest: float = 2e-5  # chosen: residual of modes on grids that are solved directly, at most
     known: float = 3e-2  # chosen: residual of modes other than the slowest, which are to be seen
-    # chosen: modes of the second parity are others if the slowest decays so many times as fast as
-    # that of the first; such residuals move the rates of most scenes by less
+    # chosen: modes of the second parity need only be seen if the slowest decays so many times as
+    # fast as that of the first; such residuals move the rates of most scenes by less
     apart: float = 1.3
     # chosen: vectors that the iteration for three and four variables keeps, some 100 megabytes
     room: Mapping[int, int] = field(default_factory=lambda: {2: 140, 3: 140, 4: 80})

@@ -5,7 +5,7 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import ToleranceError
-from nonsmooth.statistics.sampled_gamma2 import first_times, sampled_gamma2
+from nonsmooth.statistics.sampled_gamma2 import first_times, remaining, sampled_gamma2
 
 
 @pytest.mark.parametrize("n", [100.0, np.inf])
@@ -34,6 +34,47 @@ def test_slow_scenes_are_given_time():
     found = ns.asymptotic_variance(ns.Scene("friction", noise), 0.1, method="monte_carlo")
     # 3.44 +- 0.21 from an independent run between 200 and 400
     assert abs(found.value - 3.44) < 4 * np.hypot(found.error, 0.21)
+
+
+def windows(rate, first=10.0, last=110.0):
+    """Slopes of t + exp(-rate t) / rate in two windows, the last slope, and what it lacks of 1."""
+
+    def slope(begin, end):
+        return 1 - (np.exp(-rate * begin) - np.exp(-rate * end)) / rate / (end - begin)
+
+    whole = slope(first, last)
+    return [slope(first / 4, first / 2), slope(first / 2, first)], whole, 1 - whole
+
+
+@pytest.mark.parametrize("rate", [0.07, 0.15, 0.3, 0.6])
+def test_the_rest_of_an_exponential_is_extrapolated(rate):
+    """To a part in ten where three rounds are enough; noise only makes it larger."""
+    before, last, lack = windows(rate)
+    exact = remaining([(s, 1e-12) for s in before], (last, 1e-12), 2.5, 100.0)
+    assert exact.seen
+    assert exact.size == pytest.approx(lack, rel=0.1)
+    noisy = remaining([(s, 1e-3) for s in before], (last, 1e-4), 2.5, 100.0)
+    assert noisy.size > exact.size
+
+
+def test_what_noise_hides_counts_and_what_does_not_fall_is_infinite():
+    """Nothing seen; something in the second window only; less in the first than in the second."""
+    hidden = remaining([(1.0, 0.02), (1.0, 0.02)], (1.0, 0.001), 2.5, 100.0)
+    assert not hidden.seen
+    assert 0.02 * 5 / 100 < hidden.size < 0.03 * 5 / 100
+    for before in ([(1.0, 0.01), (0.9, 0.01)], [(0.95, 0.01), (0.9, 0.01)]):
+        late = remaining(before, (1.0, 0.001), 2.5, 100.0)
+        assert late.seen
+        assert late.size == np.inf
+
+
+def test_few_paths_are_refused_with_what_is_known():
+    """Before they are drawn: the pilot has told how many are needed."""
+    scene = ns.Scene("friction", "langevin", observable="y")
+    with pytest.raises(ToleranceError, match="would take Monte Carlo") as refused:
+        sampled_gamma2(scene, 0.01, most=1e6)
+    value, error = refused.value.result
+    assert abs(value - ns.asymptotic_variance(scene).value) < 4 * error
 
 
 @pytest.mark.slow
