@@ -9,8 +9,6 @@ of its own that has 60 seconds of processor time, and prints a table: value, err
 import argparse
 import json
 import math
-import multiprocessing
-import resource
 import time
 import warnings
 from collections.abc import Callable
@@ -20,6 +18,7 @@ import pandas as pd
 import yaml
 
 import nonsmooth as ns
+from benchmarks.limited import sent
 from nonsmooth.errors import AccuracyWarning
 
 LIMIT = 60  # seconds of processor time
@@ -92,21 +91,8 @@ def asked(name, scene, threshold):
 
 def within_limit(name, scene, threshold):
     """Ask in a process of its own; it is ended at the limit."""
-    receiver, sender = multiprocessing.Pipe(duplex=False)
-
-    def work():
-        resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
-        sender.send(asked(name, scene, threshold))
-
-    process = multiprocessing.get_context("fork").Process(target=work)
-    process.start()
-    sender.close()
-    try:
-        return receiver.recv()
-    except EOFError:
-        return {"outcome": "no answer", "seconds": float(LIMIT)}
-    finally:
-        process.join()
+    answers = sent(lambda send: send(asked(name, scene, threshold)), LIMIT)
+    return next(answers, {"outcome": "no answer", "seconds": float(LIMIT)})
 
 
 def table(scenes, penalizations, names, kept):

@@ -10,8 +10,6 @@ up.
 """
 
 import itertools
-import multiprocessing
-import resource
 import sys
 import time
 import warnings
@@ -21,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 import nonsmooth as ns
+from benchmarks.limited import sent
 from nonsmooth.errors import NonsmoothError
 
 LIMIT = 100  # seconds of processor time for a question
@@ -151,23 +150,12 @@ def ratio(first: dict, second: dict) -> float:
 
 def answers(question: Callable, tolerances: tuple[float, ...]) -> list[tuple]:
     """Ask for each tolerance, the loosest first, in a process that may be ended."""
-    receiver, sender = multiprocessing.Pipe(duplex=False)
 
-    def work():
-        resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
+    def work(send):
         for tol in tolerances:
-            ask(question, tol, sender.send)
+            ask(question, tol, send)
 
-    process = multiprocessing.get_context("fork").Process(target=work)
-    process.start()
-    sender.close()
-    found = []
-    try:
-        while True:
-            found.append(receiver.recv())
-    except EOFError:
-        process.join()
-    return found
+    return list(sent(work, LIMIT))
 
 
 def row(name: str, question: Callable, tolerances: tuple[float, ...]) -> dict:

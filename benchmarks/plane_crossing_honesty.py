@@ -9,8 +9,6 @@ which is ended after 300 seconds of processor time. A line per scene tells ratio
 core; the last lines sum up.
 """
 
-import multiprocessing
-import resource
 import sys
 import time
 import warnings
@@ -18,6 +16,7 @@ import warnings
 import numpy as np
 
 import nonsmooth as ns
+from benchmarks.limited import sent
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.errors import NonsmoothError
 
@@ -94,7 +93,6 @@ def ratio_to_paths(found, scene, interval, times, paths, seed):
 
 def compare(seed, tol, paths, send):
     """Send one by one: the text of a scene, answers and ratios, each with the seconds."""
-    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT))
     rng = np.random.default_rng(seed)
     scene, interval, times = draw(rng)
     send(
@@ -116,19 +114,9 @@ def compare(seed, tol, paths, send):
 
 def row(seed, tol, paths):
     """Compare in a process of its own; what it did not come to is missing."""
-    context = multiprocessing.get_context("fork")
-    ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(
-        target=compare, args=(seed, tol, paths, lambda **found: theirs.send(found))
-    )
-    process.start()
-    theirs.close()
     found = {}
-    try:
-        while True:
-            found |= ours.recv()
-    except EOFError:
-        process.join()
+    for part in sent(lambda send: compare(seed, tol, paths, lambda **own: send(own)), LIMIT):
+        found |= part
     met = {True: "met", False: "refused", None: "unanswered"}[found.get("met")]
     ratios = ", ".join(f"{name} {found.get(name, np.nan):.2g}" for name in RATIOS)
     times = ("seconds", *(f"{name}_seconds" for name in SOLVED))

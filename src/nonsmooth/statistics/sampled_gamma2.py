@@ -283,9 +283,10 @@ def sampled_gamma2(
         paths = max(paths, paths_for(math.sqrt(paths) * found.gamma2_error, allowed))
         fewer = max(fewer, math.ceil(fewer * share**2))
         step = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * allowed, order)
-        told, known = f"gamma^2 = {found.gamma2:.6g} has an error of {error:.1e}", found.gamma2
+        told = f"gamma^2 = {found.gamma2:.6g} has an error of {error:.1e}"
+        known = found.gamma2, error
         # a path that measures the bias runs with the step and with its half
-        require_possible(paths + 3 * fewer, times[-1] / step, told, tol, most, (known, error))
+        require_possible(paths + 3 * fewer, times[-1] / step, told, tol, most, known)
     require(met, found.gamma2, error, tol)
     return found.gamma2, error
 

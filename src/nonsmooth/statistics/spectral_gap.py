@@ -218,10 +218,8 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
         if isinstance(solver, AlternatingSolver):
             slower = tuning.SPECTRAL_GAP.apart * min(slowest)[0] if slowest else math.inf
-            rates, backward = (
-                _by_davidson(solver, parity, accuracy, slower, scene.dimension),
-                accuracy,
-            )
+            rates = _by_davidson(solver, parity, accuracy, slower, scene.dimension)
+            backward = accuracy
         else:
             rates, backward = _by_arnoldi(solver, parity, accuracy), tuning.SPECTRAL_GAP.backward
         slowest.append(min((rate.real, _moved(rates, rate, backward)) for rate in rates))
