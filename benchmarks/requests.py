@@ -644,12 +644,13 @@ def timed(run, most=math.inf):
         empty_caches()
         began = time.process_time()
         try:
-            signal.setitimer(signal.ITIMER_PROF, min(most, 1e6))
-            result = run()
+            try:
+                signal.setitimer(signal.ITIMER_PROF, min(most, 1e6))
+                result = run()
+            finally:
+                signal.setitimer(signal.ITIMER_PROF, 0)  # here it may still ring
         except (Dearer, NonsmoothError, np.linalg.LinAlgError, ValueError, RuntimeError):
             result = None
-        finally:
-            signal.setitimer(signal.ITIMER_PROF, 0)
         seconds.append(time.process_time() - began)
     return min(seconds), result
 
