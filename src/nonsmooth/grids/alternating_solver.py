@@ -150,7 +150,7 @@ class AlternatingSolver:
         result += self._by_noise(values, parity, lambda sign, columns: noise[sign] @ columns)
         return result.ravel()
 
-    def precondition(self, values: np.ndarray, parity: int, adjoint: bool = False) -> np.ndarray:
+    def _precondition(self, values: np.ndarray, parity: int, adjoint: bool = False) -> np.ndarray:
         """Apply 2 a (a - T)^-1 (a - L)^-1, or its transpose, in the place of -A^-1."""
         inverse = self._noise_resolvents
 
@@ -184,7 +184,7 @@ class AlternatingSolver:
         odd = self.mirrored and parity == ODD
 
         def solution_of(scaled):
-            return self.precondition(scaled / scale, parity, adjoint)
+            return self._precondition(scaled / scale, parity, adjoint)
 
         # preconditioned from the right, so that the residual that GMRES minimises is the true one
         def apply(scaled):

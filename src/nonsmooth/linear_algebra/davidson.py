@@ -40,7 +40,9 @@ def slow_rates(
     wanted : int
         Number of eigenvalues, of the least modulus; one more if that would divide a complex pair.
     accuracy : float
-        Residual of the eigenvalue with the smallest real part, relative.
+        Residual of the eigenvalue with the smallest real part, relative, and how much the
+        eigenvalue may change when the residual falls to a tenth: eigenvalues that are sensitive
+        are wrong by far more than their residuals.
     known : float
         Residual of the others, relative.
     room : int
@@ -48,7 +50,7 @@ def slow_rates(
     most : int
         Number of vectors that are tried.
     slower : float
-        If the smallest real part is not below this, its residual need only be that of the others.
+        If the smallest real part is not below this, `known` is its accuracy, too.
 
     Returns
     -------
@@ -67,10 +69,10 @@ def slow_rates(
         space.add(vector, apply(vector))
     tried = space.size
     while tried < most and space.size > wanted:
-        inverses, modes = space.modes(wanted)
+        inverses, modes, conditions = space.modes(wanted)
         order = np.argsort((1 / inverses).real, kind="stable")
         rates = 1 / inverses[order]
-        needed = accuracy if rates[0].real < slower else known
+        needed = (accuracy if rates[0].real < slower else known) / conditions[order[0]]
         residual = _too_large(space, inverses[order], modes[:, order], needed, known)
         if residual is None:
             return rates
@@ -132,15 +134,20 @@ class _Space:
         self._inverse[k, :k] = self._vectors[:k] @ self._images[k]
         self.size = k + 1
 
-    def modes(self, wanted: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the largest eigenvalues of the projected inverse, and eigenvectors in columns."""
+    def modes(self, wanted: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the largest eigenvalues of the projected inverse, eigenvectors and conditions.
+
+        Eigenvectors are columns; a condition number tells how far errors move an eigenvalue.
+        """
         k = self.size
         values, vectors = np.linalg.eig(self._inverse[:k, :k])
         order = np.argsort(-np.abs(values), kind="stable")
         last, following = values[order[wanted - 1 : wanted + 1]]
         divided = last.imag and np.isclose(last, following.conj(), rtol=1e-10, atol=0.0)
         taken = order[: wanted + 1 if divided else wanted]
-        return values[taken].astype(complex), vectors[:, taken].astype(complex)
+        # columns have length 1
+        conditions = np.linalg.norm(np.linalg.inv(vectors)[taken], axis=1)
+        return values[taken].astype(complex), vectors[:, taken].astype(complex), conditions
 
     def residual(self, inverse: complex, mode: np.ndarray) -> np.ndarray:
         """Return A u - u / inverse for a mode, with |A u| = 1."""
@@ -151,7 +158,7 @@ class _Space:
 
     def reduce(self, size: int) -> None:
         """Keep the largest modes of the inverse."""
-        _, modes = self.modes(size)
+        _, modes, _ = self.modes(size)
         real = np.concatenate([modes.real, modes.imag], axis=1)
         basis, weights, _ = np.linalg.svd(real, full_matrices=False)
         # of a complex pair both have the same parts

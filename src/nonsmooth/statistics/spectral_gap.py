@@ -35,7 +35,7 @@ def spectral_gap(scene: Scene, tol: float | None = None) -> Estimate:
     scene : Scene
     tol : float, optional
         Requested relative error; unless given, it is 1e-6 for one and two state variables, 1e-3 and
-        2e-2 for three and four, and what misses that is returned with a warning.
+        2e-3 for three and four, and what misses that is returned with a warning.
 
     Returns
     -------
@@ -218,7 +218,7 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float) -> tuple[float, float]:
     for parity in (ODD, EVEN) if solver.mirrored else (EVEN,):
         if isinstance(solver, AlternatingSolver):
             slower = tuning.SPECTRAL_GAP.apart * min(slowest)[0] if slowest else math.inf
-            rates = _by_davidson(solver, parity, accuracy, slower, scene.dimension)
+            rates = _by_davidson(solver, parity, accuracy, slower)
             backward = accuracy
         else:
             rates, backward = _by_arnoldi(solver, parity, accuracy), tuning.SPECTRAL_GAP.backward
@@ -248,7 +248,7 @@ def _by_arnoldi(solver, parity, accuracy):
     return 1 / largest[np.abs(largest) > 1e-12]
 
 
-def _by_davidson(solver, parity, accuracy, slower, dimension):
+def _by_davidson(solver, parity, accuracy, slower):
     """Compute slow rates where the inverse is known only approximately.
 
     If the slowest is not below `slower`, it need not be accurate.
@@ -257,13 +257,13 @@ def _by_davidson(solver, parity, accuracy, slower, dimension):
     return slow_rates(
         lambda values: -_centred(solver, parity, scale * solver.generator(values / scale, parity)),
         lambda values: _centred(
-            solver, parity, scale * solver.precondition(values / scale, parity)
+            solver, parity, scale * solver.solve(values / scale, parity, chosen.inner)[0]
         ),
         _centred(solver, parity, _start(solver)),
         chosen.fewer,
         accuracy,
         known=chosen.known,
-        room=chosen.room[dimension],
+        room=chosen.room,
         most=chosen.most,
         slower=slower,
     )

@@ -51,6 +51,22 @@ def test_slowest_rate(accuracy, room):
     assert np.all(np.diff(rates.real) >= 0)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_sensitive_rate_is_as_accurate_as_others(seed):
+    """The residual falls until it is small in comparison with the eigenvalue's condition."""
+    rng = np.random.default_rng(seed)
+    triangle = np.diag(np.concatenate([[0.5, 0.7, 0.9, 1.1], np.linspace(2.0, 1000.0, 300)]))
+    triangle += np.triu(rng.normal(size=triangle.shape), 1) * 0.3
+    triangle[:4, :4] += np.triu(np.full((4, 4), 2.0), 1)
+    basis = np.linalg.qr(rng.normal(size=triangle.shape))[0]
+    matrix = basis @ triangle @ basis.T
+    _, left, right = _modes(matrix)
+    assert np.max(1 / np.abs(np.sum(left.conj() * right, axis=0))) > 50
+    inverse = np.linalg.inv(matrix)
+    rough = inverse + inverse @ rng.normal(size=inverse.shape) * 0.1 / np.sqrt(len(inverse))
+    assert abs(found(matrix, rough, 1e-4)[0] - 0.5) <= 1e-4 * 0.5
+
+
 def _modes(matrix):
     """Return the eigenvalues, and left and right eigenvectors of length 1."""
     values, right = np.linalg.eig(matrix)
