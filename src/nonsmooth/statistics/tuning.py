@@ -121,7 +121,7 @@ class SpectralGap:
     """The slowest eigenvalue."""
 
     # chosen: relative, unless given, by the number of variables; it is reached in about a minute
-    tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-6, 2: 1e-6, 3: 1e-3, 4: 2e-3})
+    tol: Mapping[int, float] = field(default_factory=lambda: {1: 1e-6, 2: 1e-6, 3: 1e-3, 4: 2e-2})
     # chosen: number of eigenvalues; the slowest may be a complex pair, and close to others
     wanted: int = 6
     fewer: int = 4  # chosen: the same with three and four variables, where each takes longer
@@ -137,8 +137,8 @@ class SpectralGap:
     room: int = 80
     most: int = 200  # chosen: vectors after which it gives up; scenes that mix well need 20 to 60
     # chosen: residual of the rough inverses that its vectors are; a single step of alternating
-    # directions leads some scenes nowhere, and 0.03 to 0.5 take the same time
-    inner: float = 0.2
+    # directions leads some scenes nowhere, and 0.03 to 0.5 take about the same time
+    inner: float = 0.5
     # chosen: levels of the first grids of those that are combined
     first: Mapping[int, int] = field(default_factory=lambda: {2: 2, 3: 1, 4: 0})
     fitted: int = 1  # chosen: level on which the box is fitted
