@@ -1,15 +1,17 @@
 """Slow modes of a large operator whose inverse is known only approximately, by Davidson's method.
 
 The inverse is projected on a growing space of images A v, where it is exact: it takes A v to v. The
-space grows by preconditioned residuals, so that no equation is solved. See R. B. Morgan,
-Generalizations of Davidson's method for computing eigenvalues of large nonsymmetric matrices,
-J. Comput. Phys. 101 (1992), and its harmonic projection in Linear Algebra Appl. 154-156 (1991).
+space grows by preconditioned residuals, so that no equation need be solved accurately. See
+R. B. Morgan, Generalizations of Davidson's method for computing eigenvalues of large nonsymmetric
+matrices, J. Comput. Phys. 101 (1992), and its harmonic projection in Linear Algebra Appl. 154-156
+(1991).
 """
 
 import math
 from collections.abc import Callable
 
 import numpy as np
+import scipy.linalg
 
 # chosen: of a vector that is no more than this after it is made orthogonal, rounding is left
 ROUNDING = 1e-12
@@ -40,11 +42,10 @@ def slow_rates(
     wanted : int
         Number of eigenvalues, of the least modulus; one more if that would divide a complex pair.
     accuracy : float
-        Residual of the eigenvalue with the smallest real part, relative, and how much the
-        eigenvalue may change when the residual falls to a tenth: eigenvalues that are sensitive
-        are wrong by far more than their residuals.
+        Relative to the modulus, of the eigenvalue with the smallest real part: its residual times
+        its condition number, which is taken from the projected inverse and may be too small.
     known : float
-        Residual of the others, relative.
+        Residual of the others, relative; their conditions do not count.
     room : int
         Number of vectors that are kept, more than twice `wanted`; each takes 2 n numbers.
     most : int
@@ -72,7 +73,9 @@ def slow_rates(
         inverses, modes, conditions = space.modes(wanted)
         order = np.argsort((1 / inverses).real, kind="stable")
         rates = 1 / inverses[order]
-        needed = (accuracy if rates[0].real < slower else known) / conditions[order[0]]
+        aim = accuracy if rates[0].real < slower else known
+        # a double eigenvalue without a second mode has no condition; it moves like a square root
+        needed = max(aim / conditions[order[0]], aim**2)
         residual = _too_large(space, inverses[order], modes[:, order], needed, known)
         if residual is None:
             return rates
@@ -140,13 +143,13 @@ class _Space:
         Eigenvectors are columns; a condition number tells how far errors move an eigenvalue.
         """
         k = self.size
-        values, vectors = np.linalg.eig(self._inverse[:k, :k])
+        values, left, vectors = scipy.linalg.eig(self._inverse[:k, :k], left=True)
         order = np.argsort(-np.abs(values), kind="stable")
         last, following = values[order[wanted - 1 : wanted + 1]]
         divided = last.imag and np.isclose(last, following.conj(), rtol=1e-10, atol=0.0)
         taken = order[: wanted + 1 if divided else wanted]
-        # columns have length 1
-        conditions = np.linalg.norm(np.linalg.inv(vectors)[taken], axis=1)
+        with np.errstate(divide="ignore"):
+            conditions = 1 / np.abs(np.sum(left[:, taken].conj() * vectors[:, taken], axis=0))
         return values[taken].astype(complex), vectors[:, taken].astype(complex), conditions
 
     def residual(self, inverse: complex, mode: np.ndarray) -> np.ndarray:

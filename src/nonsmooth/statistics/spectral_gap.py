@@ -229,7 +229,8 @@ def gap_on(scene: Scene, grid: Grid, accuracy: float, first: int = ODD) -> _Slow
     Raises
     ------
     LinAlgError
-        If the slowest mode on the grid does not decay, as all modes of a scene do.
+        If the modes are not found, or the slowest one on the grid does not decay, as all modes of a
+        scene do.
     """
     _, solver = tensor_grid.solver(scene, grid, scene.has_odd_drift())
     slowest: list[_Slowest] = []
@@ -272,11 +273,17 @@ def _by_davidson(solver, parity, accuracy, slower):
     If the slowest is not below `slower`, it need not be accurate.
     """
     chosen, scale = tuning.SPECTRAL_GAP, solver.scale
+
+    def rough_inverse(values):
+        try:
+            solution, _ = solver.solve(values / scale, parity, chosen.inner)
+        except ToleranceError:
+            raise np.linalg.LinAlgError("the generator is hardly invertible there") from None
+        return _centred(solver, parity, scale * solution)
+
     return slow_rates(
         lambda values: -_centred(solver, parity, scale * solver.generator(values / scale, parity)),
-        lambda values: _centred(
-            solver, parity, scale * solver.solve(values / scale, parity, chosen.inner)[0]
-        ),
+        rough_inverse,
         _centred(solver, parity, _start(solver)),
         chosen.fewer,
         accuracy,

@@ -7,8 +7,11 @@ import pytest
 
 import nonsmooth as ns
 from nonsmooth.errors import SceneError, ToleranceError
+from nonsmooth.grids import tensor_grid
+from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.paths.ensembles import paths_at
 from nonsmooth.paths.sampling import Sampling
+from nonsmooth.statistics.spectral_gap import gap_on
 from references import LAMBDA_LIMIT
 
 
@@ -79,11 +82,27 @@ def test_finer_tolerances_keep_what_coarser_ones_know(tol):
 
 
 @pytest.mark.slow
-def test_linear_oscillator_with_colored_noise():
-    """With three variables the slowest of the noise's rate, 1, and the oscillator's, 1/2."""
-    scene = ns.Scene("obstacle", "langevin", 1e-14, potential="x**2/2", observable="x")
-    found = ns.spectral_gap(scene, 1e-2)
-    assert abs(found.value - 0.5) <= found.error <= 1e-2 * found.value
+@pytest.mark.parametrize(
+    ("damping", "stiffness", "exact"), [(1.0, 1.0, 0.5), (1.6, 0.64, 0.8), (4.0, 1.0, 2 - 3**0.5)]
+)
+def test_linear_oscillator_with_colored_noise(damping, stiffness, exact):
+    """With three variables the slowest of the noise's rate, 1, and the oscillator's.
+
+    The second has a double rate, which has no condition number.
+    """
+    scene = replace(linear(damping, stiffness), noise=ns.OrnsteinUhlenbeck())
+    found = ns.spectral_gap(scene, 1e-3)
+    assert abs(found.value - exact) <= found.error <= 1e-3 * found.value
+
+
+@pytest.mark.slow
+def test_either_parity_may_be_tried_first():
+    """The one that is not slower is only seen, and leaves the slowest rate as it is."""
+    scene = ns.Scene("elasto_plastic", "langevin", n=1.3, potential="x**2/2")
+    grid = tensor_grid.fitted(scene, 8.0, 1)
+    odd, even = (gap_on(scene, grid, 1e-5, first) for first in (ODD, EVEN))
+    assert odd.parity == even.parity
+    assert odd.rate == pytest.approx(even.rate, rel=2e-5)
 
 
 def test_noise_alone_is_refused():
