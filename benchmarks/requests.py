@@ -1,6 +1,6 @@
 """What a tolerance costs: random requests, and the best way to answer them in hindsight.
 
-`python -m benchmarks.requests` makes 200 requests, prints a table by quantity and writes every
+`python -m benchmarks.requests` makes 210 requests, prints a table by quantity and writes every
 request with all its alternatives to results/requests.csv; arguments choose quantities by their
 first words, and a number divides the counts.
 
