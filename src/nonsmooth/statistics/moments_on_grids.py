@@ -259,9 +259,11 @@ class _Krylov:
 
     def enlarge(self, dimension, slow, fast):
         """Add pairs up to a dimension, and their parts to the two lists of functions."""
-        poles = tuning.MOMENTS_ON_GRIDS.poles
+        chosen = tuning.MOMENTS_ON_GRIDS
         while len(self.pairs.rows) < dimension and not self.exhausted:
-            shift = poles[len(self.pairs.rows) % len(poles)]
+            count = len(self.pairs.rows)
+            poles = chosen.poles if count < chosen.many else chosen.early_poles
+            shift = poles[count % len(poles)]
             k, r = np.split(self.pairs.rows[-1], 2)
             r = self._resolvent(r, ODD, shift)
             k = self._resolvent(k + 2 * self.g * r, EVEN, shift)
