@@ -41,8 +41,8 @@ class MomentsOnGrids:
 
     # chosen: poles of the Krylov space, in turn; larger ones resolve times that grids often do not
     poles: tuple[float, ...] = (0.0, 10.0)
-    # chosen: poles from this dimension on, where early times are what has not settled, such as those
-    # before first contacts with a wall; with the others, 84 dimensions leave ten times the error
+    # chosen: poles from this dimension on, where early times have not settled, such as those before
+    # first contacts with a wall; with the others, 84 dimensions leave ten times the error
     many: int = 48
     early_poles: tuple[float, ...] = (5.0, 15.0, 45.0)
     # chosen: dimensions of the spaces, each compared with the one before
