@@ -259,11 +259,9 @@ class _Krylov:
 
     def enlarge(self, dimension, slow, fast):
         """Add pairs up to a dimension, and their parts to the two lists of functions."""
-        chosen = tuning.MOMENTS_ON_GRIDS
+        poles = tuning.MOMENTS_ON_GRIDS.poles
         while len(self.pairs.rows) < dimension and not self.exhausted:
-            count = len(self.pairs.rows)
-            poles = chosen.poles if count < chosen.many else chosen.early_poles
-            shift = poles[count % len(poles)]
+            shift = poles[len(self.pairs.rows) % len(poles)]
             k, r = np.split(self.pairs.rows[-1], 2)
             r = self._resolvent(r, ODD, shift)
             k = self._resolvent(k + 2 * self.g * r, EVEN, shift)

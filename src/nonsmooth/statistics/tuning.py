@@ -39,14 +39,10 @@ class Gamma2OnGrids:
 class MomentsOnGrids:
     """Mean and variance of the integral, by rational Krylov spaces."""
 
-    # chosen: poles of the Krylov space, in turn; larger ones resolve times that grids often do not
+    # chosen: poles of the Krylov space; larger ones would resolve times that the grids do not
     poles: tuple[float, ...] = (0.0, 10.0)
-    # chosen: poles from this dimension on, where early times have not settled, such as those before
-    # first contacts with a wall; with the others, 84 dimensions leave ten times the error
-    many: int = 48
-    early_poles: tuple[float, ...] = (5.0, 15.0, 45.0)
     # chosen: dimensions of the spaces, each compared with the one before
-    dimensions: tuple[int, ...] = (12, 18, 24, 36, 48, 66, 84, 120, 160)
+    dimensions: tuple[int, ...] = (12, 18, 24, 36, 48, 66, 84)
     projection: float = 0.05  # chosen: part of the tolerance for the projection
     coarsest: int = 1  # chosen: level of the first grid
     finest: int = 9  # chosen: level at which refinement ends

@@ -143,25 +143,6 @@ def test_monte_carlo(solved):
 
 
 @pytest.mark.slow
-def test_variance_before_most_contacts():
-    """Few paths have met the wall; poles for early times settle it, and Monte Carlo agrees.
-
-    Four standard errors: chance exceeds them once in 16,000 times.
-    """
-    scene = ns.Scene(
-        "obstacle", n=297.0, damping=0.54, potential="x**4/4 + x**2/2", observable="contact_force"
-    )
-    times = np.array([1.0, 2.0])
-    (_, v), (_, error) = moments_on_grids.moments(scene, times, 1e-3)
-    assert np.all(error <= 1e-3 * times)
-    run = ns.simulate(scene, 2.0, step=0.005, paths=100_000, times=times)
-    sampled = np.abs(run["variance_bias"]) + 4 * np.hypot(
-        run["variance_error"], run["variance_bias_error"]
-    )
-    assert np.all(np.abs(v - run["variance"]) <= error + sampled)
-
-
-@pytest.mark.slow
 def test_projection_against_the_whole_exponential():
     """On one coarse grid, the matrix exponential of the equations of q = E Delta^2 and w."""
     scene = SCENES["elasto_plastic"]
