@@ -87,9 +87,10 @@ class Request:
         return QUANTITIES[self.quantity].reference(self)
 
     def afresh(self):
-        """Make the same request with a new scene object, for which nothing has been cached."""
+        """Make the same request with a new scene object, for which only a reference is known."""
         other = replace(self, scene=replace(self.scene))
-        other.__dict__["reference"] = self.reference
+        if "reference" in self.__dict__:
+            other.__dict__["reference"] = self.reference
         return other
 
 
@@ -692,7 +693,7 @@ def measure(request):
 
     if timed(lambda: request.reference, REFERENCE)[1] is None:
         print(request, "has no reference", file=sys.stderr)
-        seconds, found = timed(replace(request, scene=replace(request.scene)).ask, REFERENCE)
+        seconds, found = timed(lambda: request.afresh().ask(), REFERENCE)
         return [("library", "refused" if found is None else found[1], seconds, math.nan)]
     loose = max(request.tol, min(LOOSER[0] * request.tol, LOOSEST))
     timed(lambda: request.afresh().ask(loose))  # loads what was compiled
