@@ -113,7 +113,7 @@ def _in_plane(scene, lower, upper, tol):
     problem = PlaneProblem(scene, lower, upper, times)
     seen = _amplified(problem, mean)
 
-    def solve(resolution):
+    def solve(resolution, count):
         found = _at_zero(problem.transform(resolution, times, 0.0), mean, seen)
         return np.array(found)[:, None] / mean
 

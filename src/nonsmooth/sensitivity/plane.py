@@ -83,11 +83,11 @@ def logarithmic_derivative(
 def _refined(problem, times, parts, solver, tol):
     """Refine each part of the resolution by itself; return the derivative and its largest error."""
 
-    def error(found):
-        return float(np.max(found.change)) + of_first_passage.PLANE.unseen_error
+    def errors(found):
+        return np.max(found.change, axis=0) + of_first_passage.PLANE.unseen_error
 
-    found = refine_each_part(parts, solver(problem, times), lambda found: error(found) <= tol, tol)
-    return found.value[0], error(found)
+    found = refine_each_part(parts, solver(problem, times), lambda found: errors(found) <= tol, tol)
+    return found.value[0], float(np.max(errors(found)))
 
 
 class _Problem(PlaneProblem):
@@ -125,8 +125,8 @@ def _by_contours(problem, times):
     """Return what inverts the derivative on contours; its second row is that of the survival."""
     solve = plane.inverted(problem, times)
 
-    def solved(resolution):
-        value = solve(resolution)[0]
+    def solved(resolution, count):
+        value = solve(resolution, count)[0]
         return np.array([value, -value])
 
     return solved
@@ -135,7 +135,7 @@ def _by_contours(problem, times):
 def _by_steps(problem, times):
     """Return what takes steps of the derivative; its second row is that of the survival."""
     solve = time_stepping.stepped(problem, times, problem.moves)
-    return lambda resolution: (solve(resolution) / IMAGINARY).real
+    return lambda resolution, count: (solve(resolution, count) / IMAGINARY).real
 
 
 def _moves(question, parameter):

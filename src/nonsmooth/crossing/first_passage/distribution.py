@@ -183,6 +183,14 @@ class Together:
         return early
 
     @cached_property
+    def near(self) -> np.ndarray:
+        """Which times are near enough to `early` ones for steps to go on, shape (m, k)."""
+        settings, last = tuning.TIME_STEPPING, self.times[-1]
+        stepped = np.max(self.early * self.times, axis=1)
+        near = (last <= settings.latest / self.scene.damping) & (last <= settings.near * stepped)
+        return np.repeat(near[:, None], len(self.times), axis=1)
+
+    @cached_property
     def later(self) -> np.ndarray:
         """Times at which contours serve some interval, shape (k,)."""
         return np.any(~self.early, axis=0)
@@ -196,9 +204,10 @@ class Together:
 def _one_in_plane(together, row, tol):
     """Solve for two state variables: some early times by steps, the others by contours.
 
-    Where contours miss the tolerance, steps are tried, and contours once more for the times that
-    are left. If steps may do for all times, each of both gives way to the other, before they go on
-    to very fine grids. There, steps are not accurate for a displacement that yields.
+    Steps go on to the last time if this is near. Where contours miss the tolerance, steps are
+    tried, and contours once more for the times that are left. If steps may do for all times, each
+    of both gives way to the other, before they go on to very fine grids. There, steps are not
+    accurate for a displacement that yields.
     """
     times = together.times
     solution, error = np.zeros((2, len(times))), np.full((2, len(times)), np.inf)
@@ -231,10 +240,11 @@ def _one_in_plane(together, row, tol):
     whole = together.problem(row, times)
     early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
     by_steps = stepped, tuning.STEPPED_PARTS
-    solve(early, *by_steps)
+    solve(early | together.near[row], *by_steps)
     steps_may_do = not (late.any() or np.any(error[:, early] > tol))
     rounds = tuning.EACH_PART.tried if steps_may_do else math.inf
-    solve(~early, together.inverted, at=together.later, most=rounds)
+    if np.any(error[:, ~early] > tol):
+        solve(~early, together.inverted, at=together.later, most=rounds)
     solve(early & np.isinf(error[0]), inverted)  # they are stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
@@ -259,7 +269,11 @@ def _part_by_part(problem, times, parts, solver, tol, most):
         return solution, _with_floors(problem, times, solution, change)
 
     found = refine_each_part(
-        parts, solver(problem, times), lambda found: np.all(stated(found)[1] <= tol), tol, most
+        parts,
+        solver(problem, times),
+        lambda found: np.all(stated(found)[1] <= tol, axis=0),
+        tol,
+        most,
     )
     return stated(found)
 

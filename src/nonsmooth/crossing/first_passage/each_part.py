@@ -8,14 +8,18 @@ follow. Where the order of a method is known, its changes are extrapolated, and 
 this changes from one resolution to the next; at least a share of the last change, or of what this
 changed before, if that is known and less. The parts with the largest errors are refined; those with
 small ones are measured again in the end if one is extrapolated: long steps hide what a grid misses.
+
+Where refining several parts together changes the solution by the sum of what each changes alone,
+the next change of each is measured with the others still coarse, which takes less. What this sum
+misses is an error, too, as far as the part's changes fall. Late times that are met are left out.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.problem import Part
@@ -42,8 +46,8 @@ class Found:
 
 def refine_each_part(
     parts: tuple[Part, ...],
-    solve: Callable[[tuple[int, ...]], np.ndarray],
-    met: Callable[[Found], bool],
+    solve: Callable[[tuple[int, ...], int | None], np.ndarray],
+    met: Callable[[Found], ArrayLike],
     tol: float,
     most: float = math.inf,
 ) -> Found:
@@ -53,9 +57,10 @@ def refine_each_part(
     ----------
     parts : tuple of Part
     solve : callable
-        Takes the resolutions of all parts; returns probability and survival probability.
+        Takes the resolutions of all parts, and how many times are wanted, None for all; returns
+        probability and survival probability at the first of them, or at all.
     met : callable
-        Whether a result is accurate enough.
+        Whether a result is accurate enough, shape (k,), or at all times.
     tol : float
         Absolute error wanted.
     most : float
@@ -76,15 +81,16 @@ def refine_each_part(
         If the first one, or one that it is compared with, is refused or not `solvable`.
     """
     with counter("solutions") as advance:
+        known: dict[tuple[int, ...], np.ndarray] = {}
 
-        @cache
-        def solution(at):
-            with solvable():
-                found = solve(at)
-            advance(1)
-            return found
+        def solution(at, count):
+            if at not in known:
+                with solvable():
+                    known[at] = solve(at, count)
+                advance(1)
+            return known[at][..., :count]
 
-        return _refined(parts, solution, met, tol, most)
+        return _refined(_Rounds(parts, solution, tol), met, most)
 
 
 class _Best:
@@ -98,20 +104,43 @@ class _Best:
 
     def __init__(self) -> None:
         self._found: Found | None = None
-        self._least, self._last, self.grown = math.inf, math.inf, 0
-        self._doubt = np.zeros(0)
+        self._doubt = self._least = self._last = np.zeros(())
+        self.grown = 0
 
-    def take(self, found: Found, size: float) -> None:
-        """Keep a result if its changes, which are of a size, are smaller than all before."""
-        if self._found is None or size < self._least:
-            self._found, self._least, self._doubt = found, size, np.zeros_like(found.value)
-        self._doubt = np.maximum(self._doubt, np.abs(found.value - self._found.value))
-        self.grown += not size < self._last
-        self._last = size
+    def take(self, found: Found, sizes: np.ndarray) -> None:
+        """Keep a result at the first times if its changes are smaller there than all before.
+
+        Parameters
+        ----------
+        found : Found
+        sizes : numpy.ndarray, shape (2, m)
+            Of its changes at the m first times, at which it is new.
+        """
+        if self._found is None:
+            self._found = Found(found.value.copy(), found.change.copy())
+            self._doubt = np.zeros_like(found.value)
+            self.forget()
+        here = np.s_[:, : sizes.shape[1]]
+        if sizes.max() < self._least[here].max():
+            self._keep(found, here)
+            self._least[here] = sizes
+        apart = np.abs(found.value - self._found.value)[here]
+        self._doubt[here] = np.maximum(self._doubt[here], apart)
+        self.grown += not sizes.max() < self._last[here].max()
+        self._last = sizes
+
+    def leave(self, found: Found, count: int) -> None:
+        """Keep a result as it is at all but the first times."""
+        self._keep(found, np.s_[:, count:])
+
+    def _keep(self, found, here):
+        assert self._found is not None
+        self._found.value[here], self._found.change[here] = found.value[here], found.change[here]
+        self._doubt[here] = 0.0
 
     def forget(self) -> None:
         """Keep the next result, whatever its changes are."""
-        self._least = self._last = math.inf
+        self._least, self._last = np.full((2, *self._doubt.shape), np.inf)
 
     def found(self) -> Found:
         """Return the best result; what later ones differ from it by is an error, too."""
@@ -119,80 +148,193 @@ class _Best:
         return Found(self._found.value, self._found.change + self._doubt)
 
 
-def _refined(parts, solution, met, tol, most):
+class _Rounds:
+    """Rounds of measuring what each part changes, and of refining some of them.
+
+    Parameters
+    ----------
+    parts, tol
+        As for `refine_each_part`.
+    solution : callable
+        Takes the resolutions of all parts, and how many times are wanted.
+
+    Attributes
+    ----------
+    at : tuple of int
+        Resolutions.
+    tol : float
+    """
+
+    def __init__(self, parts: tuple[Part, ...], solution: Callable, tol: float):
+        self._parts, self._solution, self.tol = parts, solution, tol
+        rows = [(part.counted, part.falls, part.beyond) for part in parts]
+        self._counted, self._falls, self._beyond = np.transpose(rows)[:, :, None, None]
+        self._finer = np.array([part.step > 0 for part in parts])
+        loose = tol >= tuning.EACH_PART.loose
+        self.at = tuple(part.first - int(part.coarser and loose) for part in parts)
+        self._count: int | None = None
+        self._refined = self._settled = np.full(len(parts), False)
+        self._previous: tuple[int, ...] = ()
+        self._further_before: float | np.ndarray = np.inf
+
+    def begin_finer(self) -> None:
+        """Begin at the next resolution."""
+        self.at = tuple(min(n + 1, p.last) for n, p in zip(self.at, self._parts, strict=True))
+
+    def measured(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Measure what the parts change.
+
+        Returns
+        -------
+        value : numpy.ndarray, shape (2, m)
+            At the m times that are still wanted.
+        sizes, errors : numpy.ndarray, shape (number of parts, 2, m)
+            What is left of the changes, and of all that would follow.
+        """
+        settings, base = tuning.EACH_PART, self._solution(self.at, self._count)
+        changes, missed = self._measure(base)
+        if not self._previous:
+            self._before = self._changes_from_coarser(base)
+            self._floor = self._falls * np.abs(self._before)
+        self._base, self._changes = base, changes
+        self._rates = _rates(changes, self._before)
+        # the changes of finer parts are added: what remains is the change of their changes
+        extrapolated = (1 + self._beyond) * changes
+        # what this adds to the change before, which is extrapolated, too
+        self._further = extrapolated - self._beyond * self._before
+        least = np.minimum(self._falls * np.abs(changes), settings.again * self._further_before)
+        self._floor = np.where(self._beyond > 0, least, self._floor)
+        sizes = np.maximum(self._counted * np.abs(self._further), self._floor)
+        sizes += np.clip(self._rates[:, None, None], self._falls, 1.0) * missed
+        errors = further_terms(self._rates)[:, None, None] * sizes
+        return base + extrapolated[self._finer].sum(axis=0), sizes, errors
+
+    def _measure(self, base):
+        """Measure changes, and what their sum misses of refining those that are not at `at`."""
+        begun = self._previous
+        changes = {
+            k: self._change(self.at, k, base)
+            for k in np.flatnonzero(~self._settled & ~(self._finer & self._refined)).tolist()
+        }
+        refined = np.flatnonzero(self._finer & self._refined).tolist()
+        missed, additive = 0.0, False
+        if refined:
+            coarser = (changes[k] for k in np.flatnonzero(~self._finer & self._refined).tolist())
+            missed = np.abs(base + sum(coarser) - self._predicted[..., : self._count])
+            additive = missed.max() <= tuning.EACH_PART.additive * self.tol
+        for k in refined:
+            at = _stepped(begun, k, 1) if additive else self.at
+            changes[k] = self._change(at, k, self._solution(at, self._count))
+        for k in np.flatnonzero(self._settled).tolist():
+            changes[k] = self._changes[k]
+        elsewhere = (self._finer & self._refined & additive)[:, None, None]
+        return np.array([changes[k] for k in range(len(self._parts))]), elsewhere * missed
+
+    def _change(self, at, k, base):
+        """Return what a part changes from resolutions whose solution is `base`."""
+        return self._solution(_stepped(at, k, self._parts[k].step), self._count) - base
+
+    def _changes_from_coarser(self, base):
+        """Return what parts changed before: two resolutions may agree by chance, three hardly."""
+        return np.array(
+            [
+                base - self._solution(_stepped(self.at, k, -1), self._count)
+                if part.step > 0 and self.at[k] > 0
+                else np.zeros_like(base)
+                for k, part in enumerate(self._parts)
+            ]
+        )
+
+    @property
+    def hopeless(self) -> bool:
+        """Whether the tolerance is out of reach of the finest resolutions."""
+        least = _least(self._further, self._rates, self._falls, self._left)
+        return least > tuning.EACH_PART.hopeless * self.tol
+
+    @property
+    def _left(self):
+        """How many finer resolutions there are of each part."""
+        return np.array([part.last - n for n, part in zip(self.at, self._parts, strict=True)])
+
+    @property
+    def hides(self) -> bool:
+        """Whether small changes were measured with steps that were longer than they are now."""
+        return bool(self._settled.any() and self._beyond.any())
+
+    def again(self) -> None:
+        """Measure small changes again."""
+        self._settled = np.full(len(self._parts), False)
+
+    def refine(self, errors: np.ndarray, sizes: np.ndarray, count: int) -> bool:
+        """Refine the worst parts, for the first times; return whether there are any.
+
+        Parameters
+        ----------
+        errors, sizes
+            Those that were measured.
+        count : int
+            How many times are still wanted.
+        """
+        errors, sizes = errors[..., :count], sizes[..., :count]
+        worst = errors.max(axis=(1, 2))
+        # what hardly counts is neither refined nor measured again on the next grid
+        small = worst <= tuning.EACH_PART.settled * self.tol
+        worst = np.where((self._left > 0) & ~small, worst, 0.0)
+        chosen = _to_refine(worst, errors, self._falls, self.tol)
+        if not chosen.any():
+            return False
+        rows, changes = chosen[:, None, None], self._changes[..., :count]
+        further = np.broadcast_to(self._further_before, self._further.shape)
+        self._further_before = np.where(rows, np.abs(self._further), further)[..., :count]
+        self._floor = np.where(rows, self._falls * sizes, self._floor[..., :count])
+        self._before = np.where(rows, changes, self._before[..., :count])
+        self._predicted = self._base[..., :count] + changes[self._finer & chosen].sum(axis=0)
+        self._changes, self._count = changes, count
+        self._settled, self._refined, self._previous = small, chosen, self.at
+        self.at = tuple(n + int(c) for n, c in zip(self.at, chosen, strict=True))
+        return True
+
+
+def _refined(rounds, met, most):
     """Refine with solutions that are not computed twice."""
-    settings = tuning.EACH_PART
-    at = begun = tuple(part.first - int(part.coarser and tol >= settings.loose) for part in parts)
-    # the changes of finer parts are added: what remains is the change of their changes
-    finer, settled = np.array([part.step > 0 for part in parts]), np.full(len(parts), False)
-    rows = [(part.counted, part.falls, part.beyond) for part in parts]
-    counted, falls, beyond = np.transpose(rows)[:, :, None, None]
-    before, found, changes, further_before, best = None, None, None, np.inf, _Best()
+    settings, best, begun = tuning.EACH_PART, _Best(), rounds.at
+    found: Found | None = None
     while True:
         try:
-            base = solution(at)
-            changes = np.array(
-                [
-                    changes[k] if settled[k] else solution(_stepped(at, k, part.step)) - base
-                    for k, part in enumerate(parts)
-                ]
-            )
-            if before is None:
-                before = _changes_from_coarser(parts, solution, at)
-                floor = falls * np.abs(before)
+            value, sizes, errors = rounds.measured()
         except (UnstableError, ToleranceError) as refused:
             if found is not None:
                 return best.found()
-            if at != begun or not isinstance(refused, UnstableError):
+            if rounds.at != begun or not isinstance(refused, UnstableError):
                 raise
-            at = tuple(min(n + 1, part.last) for n, part in zip(at, parts, strict=True))
+            rounds.begin_finer()
             continue
-        rates = _rates(changes, before)
-        extrapolated = (1 + beyond) * changes
-        # what this adds to the change before, which is extrapolated, too
-        further = extrapolated - beyond * before
-        least = np.minimum(falls * np.abs(changes), settings.again * further_before)
-        floor = np.where(beyond > 0, least, floor)
-        sizes = np.maximum(counted * np.abs(further), floor)
-        errors = further_terms(rates)[:, None, None] * sizes
-        value = base + extrapolated[finer].sum(axis=0)
-        found, most = Found(value, errors.sum(axis=0)), most - 1
-        best.take(found, sizes.sum(axis=0).max())
-        over = met(found)
+        found, most = _renewed(found, value, errors.sum(axis=0)), most - 1
+        best.take(found, sizes.sum(axis=0))
+        good = np.broadcast_to(met(found), found.value.shape[1:])
+        over, count = good.all(), value.shape[1]
         if not over and best.grown > settings.patience:
             return best.found()
-        left = np.array([part.last - n for n, part in zip(at, parts, strict=True)])
-        worst = errors.max(axis=(1, 2))
-        small = worst <= settings.settled * tol
-        chosen = _to_refine(np.where((left > 0) & ~small, worst, 0.0), errors, falls, tol)
-        hopeless = _least(further, rates, falls, left) > settings.hopeless * tol
-        if most <= 0 and not over and np.max(found.change) > settings.close * tol:
+        if most <= 0 and not over and np.max(found.change) > settings.close * rounds.tol:
             return best.found()
-        if over or hopeless or not chosen.any():
-            if not (settled.any() and beyond.any()):
+        if not (over or rounds.hides):
+            count = min(count, int(np.flatnonzero(~good)[-1]) + 1)
+            best.leave(found, count)
+        if over or rounds.hopeless or not rounds.refine(errors, sizes, count):
+            if not rounds.hides:
                 return found if over else best.found()
             # steps that are still long hide what a grid misses
-            settled = np.full(len(parts), False)
+            rounds.again()
             best.forget()
-            continue
-        # what hardly counts is neither refined nor measured again on the next grid
-        settled = small
-        at = tuple(n + int(c) for n, c in zip(at, chosen, strict=True))
-        refined = chosen[:, None, None]
-        further_before = np.where(refined, np.abs(further), further_before)
-        floor, before = np.where(refined, falls * sizes, floor), np.where(refined, changes, before)
 
 
-def _changes_from_coarser(parts, solution, at):
-    """Compute what the parts changed before: two resolutions may agree by chance, three hardly."""
-    base = solution(at)
-    return np.array(
-        [
-            base - solution(_stepped(at, k, -1))
-            if part.step > 0 and at[k] > 0
-            else np.zeros_like(base)
-            for k, part in enumerate(parts)
-        ]
+def _renewed(found, value, change):
+    """Put what is new at the first times in the place of what was found."""
+    if found is None:
+        return Found(value, change)
+    count = value.shape[1]
+    return Found(
+        np.hstack([value, found.value[:, count:]]), np.hstack([change, found.change[:, count:]])
     )
 
 

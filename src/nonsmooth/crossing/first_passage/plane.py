@@ -411,8 +411,8 @@ def inverted(
     -------
     callable
         Takes the resolutions of the grid, driven and other variable, of the basis and of the
-        contour; returns probability and survival probability, shape (2, k), 0 and 1 where they are
-        not wanted.
+        contour, and how many times are wanted, None for all; returns probability and survival
+        probability at the first of them, shape (2, m), 0 and 1 where the interval is not wanted.
     """
     least, count = np.log(tuning.PLANE.least_probability), len(times)
     own, known = problem.saddle_points(times), problem.grids.saddle_points(times)
@@ -422,13 +422,13 @@ def inverted(
     solve = contour_solver(problem, times, 0.0, in_common(list(known.values()), counts))
     nothing = np.array([np.zeros(count), np.ones(count)])
 
-    def solved(resolution):
+    def solved(resolution, first=None):
         *grid, contour = resolution
         level = tuning.PLANE.levels[contour]._replace(resolution=tuple(grid))
-        found, *_ = solve(level, nothing, here)
+        found, *_ = solve(level, nothing, here & (np.arange(count) < (first or count)))
         # contours that serve others may not serve it yet
         found[:, :begin], found[:, ~here] = nothing[:, :begin], nothing[:, ~here]
-        return found
+        return found[:, :first]
 
     return solved
 

@@ -42,9 +42,10 @@ def stepped(
     Returns
     -------
     callable
-        Takes the resolutions of the grid, driven and other variable, of x and of time; returns
-        probability and survival probability, shape (2, k); their derivatives times `IMAGINARY` are
-        the imaginary parts, see `split_step`. Raises `UnstableError` if the solution grows.
+        Takes the resolutions of the grid, driven and other variable, of x and of time, and how many
+        times are wanted, None for all; returns probability and survival probability at the first of
+        them, shape (2, m); their derivatives times `IMAGINARY` are the imaginary parts, see
+        `split_step`. Raises `UnstableError` if the solution grows.
     """
     settings, damping, last = tuning.TIME_STEPPING, problem.scene.damping, times[-1]
     duration, way = problem.mean_duration(), problem.grids.way
@@ -52,9 +53,9 @@ def stepped(
     spread = way * damping * min(last, math.sqrt(settings.slow * last / damping))
     if problem.largest_probability(last) < tuning.PLANE.least_probability:
         nothing = np.array([0.0 * times, 1.0 + 0.0 * times])
-        return lambda resolution: nothing
+        return lambda resolution, count=None: nothing[:, :count]
 
-    def solve(resolution):
+    def solve(resolution, count=None):
         driven, other, fine, short = resolution
         step, (degree, finest, widest) = settings.steps[short], settings.elements[fine]
         interval = _interval(
@@ -71,8 +72,8 @@ def stepped(
             interval = interval.stretched(stretch)
         steps = _steps(problem.grids.stepped_grid(driven, other), interval, first)
         longest = step * settings.longest / max(damping, steps.rate)
-        at, values = _survival(steps, longest, settings.per_length / step, last)
-        found = CubicSpline(at, values)(times)
+        at, values = _survival(steps, longest, settings.per_length / step, times[:count][-1])
+        found = CubicSpline(at, values)(times[:count])
         return np.array([1 - found, found])
 
     return solve

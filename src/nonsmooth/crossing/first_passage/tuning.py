@@ -175,6 +175,9 @@ class EachPart:
     loose: float = 1e-3  # chosen: tolerance from which some parts begin coarser by one
     # chosen: changes up to so much of tol are left as they are; those of four parts may be met
     settled: float = 0.2
+    # chosen: parts are measured with the others coarse if what the sum of their changes missed of
+    # the change by refining them together is at most so much of tol
+    additive: float = 0.3
     # chosen: there is no hope if the changes that are left at the finest resolution, extrapolated
     # from two of them, are so many times the tolerance
     hopeless: float = 10.0
@@ -303,7 +306,8 @@ class TimeStepping:
     """Steps in time of two state variables."""
 
     until: float = 10.0  # chosen: last time, in relaxation times; later the transform is tame
-    latest: float = 40.0  # chosen: last time where contours miss the tolerance
+    latest: float = 40.0  # chosen: last time where contours miss the tolerance, or it is near ...
+    near: float = 10.0  # chosen: ... as of at most so many times one that needs steps
     narrow: float = 3.0  # chosen: an interval's length, in ways that int g goes in a relaxation
     #                      time, up to which steps are faster than contours
     ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x

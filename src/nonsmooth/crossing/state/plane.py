@@ -94,7 +94,7 @@ def solved(asked: StateCrossing, times: np.ndarray, tol: float) -> tuple[np.ndar
         return found.change.max(axis=0) + box + settings.least
 
     found = refine_each_part(
-        tuning.PLANE_PARTS, solve, lambda found: bool(np.all(error(found) <= tol)), tol
+        tuning.PLANE_PARTS, lambda at, count: solve(at), lambda found: error(found) <= tol, tol
     )
     value, total = np.clip(found.value[-1], 0.0, 1.0), error(found)
     if not np.all(total <= tol):

@@ -106,6 +106,13 @@ class TestEarlyTimes:
         assert not stepped_at
         assert np.all(found["probability_error"] <= 1e-2)
 
+    @pytest.mark.parametrize(("last", "goes_on"), [(4.0, True), (8.0, False)])
+    def test_steps_go_on_where_the_last_time_is_near(self, stepped_at, last, goes_on):
+        """Ten times as far as steps are needed they stop."""
+        times = np.array([0.5, last])
+        deterministic_crossing(COLORED_FRICTION, np.array([[-1.0, 1.0]]), times, 1e-2)
+        assert stepped_at == (times if goes_on else times[:1]).tolist()
+
     @pytest.mark.parametrize("levels", [(-0.2, 0.2), (-np.inf, 0.2)])
     def test_narrow_ones_are_marched(self, stepped_at, levels):
         """Within a relaxation time int g goes farther than to the levels, or to the only one."""
@@ -122,7 +129,7 @@ class TestWhereContoursFail:
         """Let all solutions fail."""
 
         def fails(*problem_and_times):
-            def solve(at):
+            def solve(at, count):
                 raise UnstableError("the solutions amplify")
 
             return solve
@@ -148,7 +155,7 @@ class TestWhereContoursFail:
     def test_what_is_not_finite(self, monkeypatch):
         """It is no answer."""
         monkeypatch.setattr(
-            distribution, "inverted", lambda *problem_and_times: lambda at: np.full((2, 1), np.nan)
+            distribution, "inverted", lambda *problem: lambda at, count: np.full((2, 1), np.nan)
         )
         with pytest.raises(ToleranceError, match="not finite; use method='monte_carlo'"):
             deterministic_crossing(COLORED_FRICTION, np.array([[-1.0, 1.0]]), np.array([50.0]), 0.1)

@@ -16,7 +16,7 @@ PARTS = (Part(0, 12, 1), Part(0, 12, 1), Part(1, 12, -1))
 
 def solution(errors):
     """Zero, but for the errors of the three parts at their resolutions."""
-    return lambda at: np.array(
+    return lambda at, count: np.array(
         [[sum(error(n) for error, n in zip(errors, at, strict=True))], [0.0]]
     )
 
@@ -37,9 +37,9 @@ class TestRefineEachPart:
         """Two parts that are exact do not hide the third, whose error is refined alone."""
         asked = []
 
-        def solve(at):
+        def solve(at, count):
             asked.append(at)
-            return solution([lambda n: 0.1**n, lambda n: 0.0, lambda n: 0.0])(at)
+            return solution([lambda n: 0.1**n, lambda n: 0.0, lambda n: 0.0])(at, count)
 
         found = refine_each_part(PARTS, solve, lambda found: found.change.max() <= 1e-3, 1e-3)
         assert found.change.max() <= 1e-3
@@ -51,9 +51,9 @@ class TestRefineEachPart:
         """A change below a fifth of the tolerance goes on to count while the others are refined."""
         asked, tol = set(), 1e-2
 
-        def solve(at):
+        def solve(at, count):
             asked.add(at)
-            return solution([lambda n: 0.2**n, lambda n: size * 0.5**n])(at)
+            return solution([lambda n: 0.2**n, lambda n: size * 0.5**n])(at, count)
 
         parts = Part(0, 9, 1), Part(0, 9, 1)
         found = refine_each_part(parts, solve, lambda found: found.change.max() <= tol, tol)
@@ -63,7 +63,7 @@ class TestRefineEachPart:
     def test_what_another_part_hides_is_found(self):
         """A grid that changes nothing while steps are long, and much when they are short."""
 
-        def solve(at):
+        def solve(at, count):
             return np.array([[0.2 ** at[0] + 0.5 * (1 - 0.2 ** at[0]) * 0.4 ** (at[1] + 1)], [0.0]])
 
         tol = 1e-2
@@ -71,11 +71,44 @@ class TestRefineEachPart:
         found = refine_each_part(parts, solve, lambda found: found.change.max() <= tol, tol)
         assert abs(found.value[0, 0]) <= found.change[0, 0] <= tol
 
+    @pytest.mark.parametrize(("product", "coarser"), [(0.0, 2), (100.0, 1)])
+    def test_others_stay_coarse_where_changes_add_up(self, product, coarser):
+        """The finest of one part is asked with the other before refining, or at the same level."""
+        asked = set()
+
+        def solve(at, count):
+            asked.add(at)
+            errors = 0.2 ** np.array(at)
+            return np.array([[errors.sum() + product * errors.prod()], [0.0]])
+
+        parts, tol = (Part(1, 9, 1), Part(1, 9, 1)), 1e-2
+        found = refine_each_part(parts, solve, lambda found: found.change.max() <= tol, tol)
+        assert abs(found.value[0, 0]) <= found.change[0, 0] <= tol
+        finest = max(at[0] for at in asked)
+        assert finest - max(at[1] for at in asked if at[0] == finest) == coarser
+
+    def test_late_times_that_are_met_are_left_out(self):
+        """They keep what was found for them; finer resolutions are asked for the others."""
+        asked, tol = {}, 1e-3
+
+        def solve(at, count):
+            asked[at[0]] = count
+            return np.outer([0.2 ** at[0], 0.0], [1.0, 1e-6])[:, :count]
+
+        def met(found):
+            return found.change.max(axis=0) <= tol
+
+        found = refine_each_part((Part(0, 9, 1),), solve, met, tol)
+        assert np.all(np.abs(found.value) <= found.change)
+        assert met(found).all()
+        assert asked.pop(0) is asked.pop(1) is None
+        assert set(asked.values()) == {1}
+
     @pytest.mark.parametrize("irregular", [0.0, 0.3, -0.3])
     def test_extrapolates_a_known_order(self, irregular):
         """Errors of order 2 cancel; what is left of order 3 is below what is stated."""
 
-        def solve(at):
+        def solve(at, count):
             return np.array([[0.25 ** at[0] + irregular * 0.125 ** at[0]], [0.0]])
 
         part = Part(1, 9, 1, falls=0.1, beyond=1 / 3)
@@ -89,7 +122,7 @@ class TestRefineEachPart:
         """At first a tenth of the last change counts, then half of what extrapolation changed."""
         solved = []
 
-        def solve(at):
+        def solve(at, count):
             solved.append(at[0])
             return np.array([[0.25 ** at[0] + 0.01 * 0.125 ** at[0]], [0.0]])
 
@@ -105,7 +138,7 @@ class TestRefineEachPart:
         values = [0.0, 1e-2, 1e-2, 1e-2]
         found = refine_each_part(
             (Part(0, 2, 1),),
-            lambda at: np.array([[values[at[0]]], [0.0]]),
+            lambda at, count: np.array([[values[at[0]]], [0.0]]),
             lambda found: found.change.max() <= 1e-4,
             1e-4,
         )
@@ -114,7 +147,7 @@ class TestRefineEachPart:
     def test_ends_at_the_finest(self):
         """What is not met comes back with its error; changes that do not fall count ten times."""
 
-        def solve(at):
+        def solve(at, count):
             return np.array([[(-1.0) ** at[0]], [0.0]])
 
         found = refine_each_part((Part(2, 2, 1),), solve, lambda found: False, 0.1)
@@ -125,7 +158,7 @@ class TestRefineEachPart:
         values = [0.0, 1e-2, 1e-2, 1.2e-2]
         found = refine_each_part(
             (Part(1, 2, 1, falls=0.3),),
-            lambda at: np.array([[values[at[0]]], [0.0]]),
+            lambda at, count: np.array([[values[at[0]]], [0.0]]),
             lambda found: True,
             1e-2,
         )
@@ -136,7 +169,7 @@ class TestRefineEachPart:
         """Errors are measured so many times, and what is known comes back with its own."""
         asked = []
 
-        def solve(at):
+        def solve(at, count):
             asked.append(at[0])
             return np.array([[0.1 ** at[0]], [0.0]])
 
@@ -151,7 +184,7 @@ class TestRefineEachPart:
         """Nothing below the resolution before it is solved."""
         asked = []
 
-        def solve(at):
+        def solve(at, count):
             asked.append(at[0])
             return np.zeros((2, 1))
 
@@ -162,7 +195,7 @@ class TestRefineEachPart:
         """Where changes grow, the best result comes back, with what the next one differs by."""
         values = [0.0, 1e-2, 5e-2]
 
-        def solve(at):
+        def solve(at, count):
             if at[0] == len(values):
                 raise UnstableError("too fine")
             return np.array([[values[at[0]]], [0.0]])
@@ -177,7 +210,7 @@ class TestRefineEachPart:
     def test_a_grid_that_is_too_coarse_to_be_stable(self):
         """The next one is tried; where the coarser one of the first comparison is, as well."""
 
-        def solve(at):
+        def solve(at, count):
             if at[0] < 2:
                 raise UnstableError("too coarse")
             return np.array([[0.1 ** at[0]], [0.0]])
@@ -195,7 +228,7 @@ class TestRefineEachPart:
     def test_what_is_known_outlives_a_grid_that_fails(self, failure):
         """A first comparison has a value and an error; without it there is none."""
 
-        def solve(at):
+        def solve(at, count):
             if at[0] == 4:
                 raise failure
             return np.array([[2.0 ** -at[0]], [0.0]])
@@ -211,7 +244,7 @@ class TestRefineEachPart:
         """At 0.9 a resolution, five leave more than ten times a thousandth; at 0.5 they do not."""
         seen = set()
 
-        def solve(at):
+        def solve(at, count):
             seen.add(at)
             return np.array([[rate ** at[0]], [0.0]])
 
@@ -224,7 +257,7 @@ class TestRefineEachPart:
         monkeypatch.setattr(tuning, "EACH_PART", replace(tuning.EACH_PART, patience=patience))
         values, tol = [0.0, 1e-5, 3e-5, 10e-5, 10.3e-5, 10.35e-5], 1e-5
 
-        def solve(at):
+        def solve(at, count):
             return np.array([[values[at[0]]], [0.0]])
 
         parts = (Part(1, 4, 1),)
@@ -237,7 +270,7 @@ class TestRefineEachPart:
         """The best result has what any later one differs from it by, not only the last."""
         values = [0.0, 2e-5, 3e-5, 20e-5, 4e-5, 20e-5]
 
-        def solve(at):
+        def solve(at, count):
             return np.array([[values[at[0]]], [0.0]])
 
         found = refine_each_part((Part(1, 4, 1),), solve, lambda found: False, 1e-5)
@@ -249,7 +282,7 @@ class TestRefineEachPart:
         """It does if the first error is less than three times the tolerance."""
         asked = []
 
-        def solve(at):
+        def solve(at, count):
             asked.append(at[0])
             return np.array([[0.2 ** at[0]], [0.0]])
 
