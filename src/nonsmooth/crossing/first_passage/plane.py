@@ -395,7 +395,7 @@ def _require_resolved(scene, ends, distance):
 
 def inverted(
     problem: PlaneProblem, times: np.ndarray, wanted: dict[tuple, np.ndarray] | None = None
-) -> Callable[[tuple], np.ndarray]:
+) -> Callable[..., np.ndarray]:
     """Prepare the inversion of the transform, on contours that serve all intervals of its grids.
 
     Parameters

@@ -27,7 +27,7 @@ from nonsmooth.linear_algebra.effort import spend
 
 def stepped(
     problem: PlaneProblem, times: np.ndarray, moves: tuple[float, float] = (0.0, 0.0)
-) -> Callable[[tuple], np.ndarray]:
+) -> Callable[..., np.ndarray]:
     """Prepare the steps.
 
     Parameters
