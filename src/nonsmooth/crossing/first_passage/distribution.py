@@ -184,11 +184,10 @@ class Together:
 
     @cached_property
     def near(self) -> np.ndarray:
-        """Which times are near enough to `early` ones for steps to go on, shape (m, k)."""
+        """Whether the last time is near enough to `early` ones for steps to go on, shape (m,)."""
         settings, last = tuning.TIME_STEPPING, self.times[-1]
         stepped = np.max(self.early * self.times, axis=1)
-        near = (last <= settings.latest / self.scene.damping) & (last <= settings.near * stepped)
-        return np.repeat(near[:, None], len(self.times), axis=1)
+        return (last <= settings.latest / self.scene.damping) & (last <= settings.near * stepped)
 
     @cached_property
     def later(self) -> np.ndarray:
@@ -239,16 +238,16 @@ def _one_in_plane(together, row, tol):
 
     whole = together.problem(row, times)
     early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
-    by_steps = stepped, tuning.STEPPED_PARTS
-    solve(early | together.near[row], *by_steps)
-    steps_may_do = not (late.any() or np.any(error[:, early] > tol))
+    by_steps, tried = (stepped, tuning.STEPPED_PARTS), together.near[row]
+    solve(early | tried, *by_steps)
+    steps_may_do = not (tried or late.any() or np.any(error[:, early] > tol))
     rounds = tuning.EACH_PART.tried if steps_may_do else math.inf
     if np.any(error[:, ~early] > tol):
         solve(~early, together.inverted, at=together.later, most=rounds)
     solve(early & np.isinf(error[0]), inverted)  # they are stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
-        solve(missed & ~late, *by_steps, most=rounds)
+        solve(missed & ~late & ~tried, *by_steps, most=rounds)
         missed = np.any(error > tol, axis=0)
         if steps_may_do or np.sum(missed & late) < np.sum(~early):  # without those that are worst
             solve(missed & (late | steps_may_do), inverted)

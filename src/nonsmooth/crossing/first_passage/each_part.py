@@ -211,7 +211,6 @@ class _Rounds:
 
     def _measure(self, base):
         """Measure changes, and what their sum misses of refining those that are not at `at`."""
-        begun = self._previous
         changes = {
             k: self._change(self.at, k, base)
             for k in np.flatnonzero(~self._settled & ~(self._finer & self._refined)).tolist()
@@ -220,10 +219,10 @@ class _Rounds:
         missed, additive = 0.0, False
         if refined:
             coarser = (changes[k] for k in np.flatnonzero(~self._finer & self._refined).tolist())
-            missed = np.abs(base + sum(coarser) - self._predicted[..., : self._count])
+            missed = np.abs(base + sum(coarser) - self._predicted)
             additive = missed.max() <= tuning.EACH_PART.additive * self.tol
         for k in refined:
-            at = _stepped(begun, k, 1) if additive else self.at
+            at = _stepped(self._previous, k, 1) if additive else self.at
             changes[k] = self._change(at, k, self._solution(at, self._count))
         for k in np.flatnonzero(self._settled).tolist():
             changes[k] = self._changes[k]

@@ -106,10 +106,10 @@ class TestEarlyTimes:
         assert not stepped_at
         assert np.all(found["probability_error"] <= 1e-2)
 
-    @pytest.mark.parametrize(("last", "goes_on"), [(4.0, True), (8.0, False)])
-    def test_steps_go_on_where_the_last_time_is_near(self, stepped_at, last, goes_on):
-        """Ten times as far as steps are needed they stop."""
-        times = np.array([0.5, last])
+    @pytest.mark.parametrize(("first", "goes_on"), [(1.0, True), (0.5, False)])
+    def test_steps_go_on_where_the_last_time_is_near(self, stepped_at, first, goes_on):
+        """It would need none alone, and is reached up to ten times as late as one that does."""
+        times = np.array([first, 8.0])
         deterministic_crossing(COLORED_FRICTION, np.array([[-1.0, 1.0]]), times, 1e-2)
         assert stepped_at == (times if goes_on else times[:1]).tolist()
 
@@ -151,6 +151,26 @@ class TestWhereContoursFail:
         levels, times = np.array([[-1.0, 1.0]]), np.array([50.0])
         with pytest.raises(ToleranceError, match="amplify; use method='monte_carlo'"):
             deterministic_crossing(COLORED_FRICTION, levels, times, 1e-3)
+
+    def test_steps_that_went_on_are_not_tried_twice(self, monkeypatch):
+        """Where they miss the later time, they would miss it again."""
+        asked = []
+
+        def irregular(problem, times):
+            asked.append(times.tolist())
+
+            def solve(at, count):
+                probability = np.array([0.5, 0.5 + 0.1 * (-1.0) ** sum(at)])
+                return np.array([probability, 1 - probability])[:, :count]
+
+            return solve
+
+        monkeypatch.setattr(distribution, "stepped", irregular)
+        with pytest.raises(ToleranceError, match="use method='monte_carlo'"):
+            deterministic_crossing(
+                COLORED_FRICTION, np.array([[-1.0, 1.0]]), np.array([1.0, 8.0]), 1e-3
+            )
+        assert asked == [[1.0, 8.0]]
 
     def test_what_is_not_finite(self, monkeypatch):
         """It is no answer."""
