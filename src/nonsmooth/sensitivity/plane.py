@@ -8,6 +8,7 @@ like those of the probability.
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import sympy
@@ -63,7 +64,8 @@ def logarithmic_derivative(
     together = Together(scene, np.array([levels]), times, _change(question, parameter))
     early = together.early[0]
     value, error = np.zeros(len(times)), np.full(len(times), np.inf)
-    by_steps, by_contours = (_by_steps, of_first_passage.STEPPED_PARTS), (_by_contours, None)
+    by_steps = _by_steps, of_first_passage.STEPPED_PARTS
+    by_contours = partial(_by_contours, tol=tol), None
     for here, solver, parts in ((early, *by_steps), (early, *by_contours), (~early, *by_contours)):
         if not np.any(error[here] > tol):
             continue
@@ -121,9 +123,9 @@ class _Problem(PlaneProblem):
         return lambda z: differentiated(ordinates, z, self.levels, self.moves)
 
 
-def _by_contours(problem, times):
+def _by_contours(problem, times, tol):
     """Return what inverts the derivative on contours; its second row is that of the survival."""
-    solve = plane.inverted(problem, times)
+    solve = plane.inverted(problem, times, tol)
 
     def solved(resolution, count):
         value = solve(resolution, count)[0]

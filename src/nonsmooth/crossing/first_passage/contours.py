@@ -5,12 +5,19 @@ z(u) = z_0 + mu (1 + sin(iu - a)). The error falls geometrically with the number
 analytic outside of a sector around the negative axis. One hyperbola serves all times of an
 interval, with the parameters of Weideman and Trefethen, Math. Comp. 76 (2007) 1341. Where f is
 small, a hyperbola through the saddle point of exp(z t) F(z) keeps the relative error small.
+
+The nodes are as close to each other as exp(z t) requires. F alone changes less, and hyperbolas of
+neighbouring intervals cover the same part of the plane. There F is evaluated at some nodes of all
+hyperbolas, and at the others it is a rational function fitted to these values by the algorithm AAA
+(Nakatsukasa, Sete and Trefethen, SIAM J. Sci. Comput. 40 (2018) A1494).
 """
 
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import AAA
 from scipy.optimize import minimize_scalar
 
 from nonsmooth.crossing.first_passage import tuning
@@ -31,6 +38,10 @@ class Contour:
     def until(self, count: int) -> "Contour":
         """Drop the nodes beyond the first `count`."""
         return Contour(self.nodes[:count], self.weights[:count])
+
+    def over_z(self) -> "Contour":
+        """Return the contour that inverts F(z) / z if it is given F."""
+        return Contour(self.nodes, self.weights / self.nodes)
 
     def invert(self, transform: np.ndarray, times: np.ndarray) -> np.ndarray:
         """Sum the trapezoidal rule.
@@ -147,3 +158,107 @@ def inverted(
         elif term < negligible * largest or len(values) == tuning.CONTOURS.truncation_most:
             break
     return contour.until(len(values)).invert(np.array(values), times)
+
+
+def inverted_together(
+    transform: Callable[[complex], complex],
+    contours: Sequence[tuple[Contour, np.ndarray]],
+    negligible: float,
+    accuracy: float,
+) -> list[np.ndarray]:
+    """Invert a transform on several contours, with a rational fit in the place of most values.
+
+    Nodes are added to all contours until a fit agrees with the one before, at all nodes that had no
+    values then.
+
+    Parameters
+    ----------
+    transform : callable
+        F, real on the real axis.
+    contours : sequence of (Contour, numpy.ndarray)
+        Each with the times that it serves, increasing.
+    negligible : float
+        Relative to the first term, at the first time.
+    accuracy : float
+        Absolute; what the last fit may change. With 0 no value is fitted.
+
+    Returns
+    -------
+    list of numpy.ndarray
+        The inverse at the times of each contour.
+    """
+    fits = tuning.CONTOUR_FITS
+    sampled = [_Sampled.begun(transform, *one, negligible) for one in contours]
+    tolerance = fits.closeness * accuracy
+    before = _filled(sampled, tolerance)
+    for place in fits.then:
+        for one in sampled:
+            one.evaluate(transform, place)
+        filled = _filled(sampled, tolerance)
+        changes = [one.change(*v) for one, *v in zip(sampled, before, filled, strict=True)]
+        if np.max(changes) <= accuracy:
+            break
+        before = filled
+    return [one.contour.invert(v, one.times) for one, v in zip(sampled, filled, strict=True)]
+
+
+@dataclass(frozen=True)
+class _Sampled:
+    """A contour as far as its terms count, and a transform at some of its nodes.
+
+    Attributes
+    ----------
+    contour : Contour
+    times : numpy.ndarray
+    known : numpy.ndarray of bool, shape (k,)
+    values : numpy.ndarray of complex, shape (k,)
+        Where they are known.
+    """
+
+    contour: Contour
+    times: np.ndarray
+    known: np.ndarray
+    values: np.ndarray
+
+    @classmethod
+    def begun(cls, transform, contour, times, negligible):
+        """Evaluate some nodes, until the terms are negligible."""
+        values: dict[int, complex] = {}
+        largest, period = 0.0, tuning.CONTOUR_FITS.period
+        last = min(len(contour.nodes), tuning.CONTOURS.truncation_most) - 1
+        for k in range(last + 1):
+            if k % period not in tuning.CONTOUR_FITS.first and k != last:
+                continue
+            values[k] = transform(contour.nodes[k])
+            term = np.abs(contour.weights[k] * values[k]) * np.exp(contour.nodes[k].real * times[0])
+            if k == 0:
+                largest = term
+            elif term < negligible * largest:
+                break
+        found = cls(contour.until(k + 1), times, np.full(k + 1, False), np.zeros(k + 1, complex))
+        found.known[list(values)], found.values[list(values)] = True, list(values.values())
+        return found
+
+    def evaluate(self, transform, place):
+        """Evaluate one node of each period."""
+        for k in range(place, len(self.known), tuning.CONTOUR_FITS.period):
+            if not self.known[k]:
+                self.known[k], self.values[k] = True, transform(self.contour.nodes[k])
+
+    def change(self, before, after):
+        """Bound what is changed of the inverse."""
+        exponents = np.max(np.outer(self.times[[0, -1]], self.contour.nodes.real), axis=0)
+        return np.sum(np.abs(self.contour.weights * (after - before)) * np.exp(exponents))
+
+
+def _filled(sampled, tolerance):
+    """Values along all contours; those that are not known are taken from a fit to the others."""
+    if all(one.known.all() for one in sampled):
+        return [one.values for one in sampled]
+    z = np.concatenate([one.contour.nodes[one.known] for one in sampled])
+    values = np.concatenate([one.values[one.known] for one in sampled])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # that it may be too inaccurate is seen
+        # with the mirror images, the fit is real on the real axis, too
+        fit = AAA(np.append(z, z.conj()), np.append(values, values.conj()), rtol=tolerance)
+        return [np.where(one.known, one.values, fit(one.contour.nodes)) for one in sampled]

@@ -194,10 +194,11 @@ class Together:
         """Times at which contours serve some interval, shape (k,)."""
         return np.any(~self.early, axis=0)
 
-    def inverted(self, problem: PlaneProblem, times: np.ndarray):
+    def inverted(self, problem: PlaneProblem, times: np.ndarray, tol: float):
         """Prepare contours for the times that are `later`, on which steps do not serve all."""
         levels = map(tuple, self.intervals.tolist())
-        return inverted(problem, times, dict(zip(levels, ~self.early[:, self.later], strict=True)))
+        wanted = dict(zip(levels, ~self.early[:, self.later], strict=True))
+        return inverted(problem, times, tol, wanted)
 
 
 def _one_in_plane(together, row, tol):
@@ -239,18 +240,20 @@ def _one_in_plane(together, row, tol):
     whole = together.problem(row, times)
     early, late = together.early[row], times * whole.scene.damping > tuning.TIME_STEPPING.latest
     by_steps, tried = (stepped, tuning.STEPPED_PARTS), together.near[row]
+    by_contours = partial(inverted, tol=tol)
     solve(early | tried, *by_steps)
     steps_may_do = not (tried or late.any() or np.any(error[:, early] > tol))
     rounds = tuning.EACH_PART.tried if steps_may_do else math.inf
     if np.any(error[:, ~early] > tol):
-        solve(~early, together.inverted, at=together.later, most=rounds)
-    solve(early & np.isinf(error[0]), inverted)  # they are stable on more grids than steps
+        of_later = partial(together.inverted, tol=tol)
+        solve(~early, of_later, at=together.later, most=rounds)
+    solve(early & np.isinf(error[0]), by_contours)  # they are stable on more grids than steps
     missed = np.any(error > tol, axis=0)
     if not missed[early].any():
         solve(missed & ~late & ~tried, *by_steps, most=rounds)
         missed = np.any(error > tol, axis=0)
         if steps_may_do or np.sum(missed & late) < np.sum(~early):  # without those that are worst
-            solve(missed & (late | steps_may_do), inverted)
+            solve(missed & (late | steps_may_do), by_contours)
             missed = np.any(error > tol, axis=0)
         if steps_may_do and not whole.scene.mechanics.is_plastic:
             solve(missed, *by_steps)

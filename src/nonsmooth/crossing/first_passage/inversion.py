@@ -40,7 +40,7 @@ def contour_solver(
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
     tol : float
-        Absolute error wanted, for fits on vertical lines.
+        Absolute error wanted, for fits of F.
     saddles : SaddlePoints, optional
         Those of the problem unless given; for contours that serve others, too.
 
@@ -80,9 +80,9 @@ def contour_solvers(
         As of `contour_solver`.
     """
     saddles = saddles or [saddle_points(problem, times) for problem in problems]
-    kind: Callable = _Inversion
+    kind: Callable = partial(_Inversion, tol)
     if problems[0].on_vertical_lines:
-        kind = partial(_OnVerticalLines, tol, _needs(problems, times, saddles))
+        kind = partial(_OnVerticalLines, _needs(problems, times, saddles), tol)
 
     def solver(problem, own):
         return lambda level, known, wanted: kind(problem, times, own, level, known, wanted).run()
@@ -95,6 +95,7 @@ class _Inversion:
 
     Parameters
     ----------
+    tol : float
     problem : LaplaceProblem
     times : numpy.ndarray, shape (k,)
     saddles : SaddlePoints
@@ -105,6 +106,7 @@ class _Inversion:
 
     def __init__(
         self,
+        tol: float,
         problem: LaplaceProblem,
         times: np.ndarray,
         saddles: SaddlePoints,
@@ -112,7 +114,7 @@ class _Inversion:
         known: np.ndarray,
         wanted: np.ndarray,
     ):
-        self.problem, self.times, self.saddles = problem, times, saddles
+        self.tol, self.problem, self.times, self.saddles = tol, problem, times, saddles
         self.level, self.known, self.wanted = level, known, wanted
         self.found, self.solved = known.copy(), np.full(len(times), False)
         self.inexact = np.zeros(len(times))
@@ -187,10 +189,19 @@ class _Inversion:
 
     def _later(self, windows):
         """Solve windows, each on a hyperbola of the kind given with it."""
-        for here, kind in windows:
-            if self.wanted[here].any():
-                integrand = _of_probability(self._transform(here))
-                self._store(here, self._on_hyperbola(integrand, here, kind))
+        windows = [(here, kind) for here, kind in windows if self.wanted[here].any()]
+        if not windows:
+            return
+        transform = self._transform(slice(windows[0][0].start, windows[-1][0].stop))
+        laid = [(self._hyperbola(*window).over_z(), self.times[window[0]]) for window in windows]
+        found = contours.inverted_together(
+            transform,
+            laid,
+            self.problem.settings.steady_truncation,
+            tuning.CONTOUR_FITS.share * self.tol,
+        )
+        for (here, _), values in zip(windows, found, strict=True):
+            self._store(here, values)
 
     def _end(self, risen):
         """Solve windows in which the survival probability is small."""
@@ -201,15 +212,17 @@ class _Inversion:
         for here in _windows(late, len(self.times), (self.times, kind.ratio)):
             if self.wanted[here].any():
                 integrand = _of_survival(self._transform(here))
-                self._store(here, self._on_hyperbola(integrand, here, kind, pole), 1)
+                contour = self._hyperbola(here, kind, pole)
+                truncation = self.problem.settings.steady_truncation
+                found = contours.inverted(integrand, contour, self.times[here], truncation)
+                self._store(here, found, 1)
 
-    def _on_hyperbola(self, integrand, here, kind, pole=0.0):
-        """Invert on a hyperbola to the right of all poles, of which `pole` is the rightmost."""
+    def _hyperbola(self, here, kind, pole=0.0):
+        """Lay a hyperbola to the right of all poles, of which `pole` is the rightmost."""
         settings, times = tuning.INVERSION, self.times[here]
         first, last = times[0], max(times[-1], settings.shortest * times[0])
         nodes = round(self.level.nodes + kind.more + settings.per_decade * np.log10(last / first))
-        contour = contours.hyperbola(first, last, nodes, kind.sector, pole)
-        return contours.inverted(integrand, contour, times, self.problem.settings.steady_truncation)
+        return contours.hyperbola(first, last, nodes, kind.sector, pole)
 
 
 class _OnVerticalLines(_Inversion):
@@ -217,16 +230,15 @@ class _OnVerticalLines(_Inversion):
 
     Parameters
     ----------
-    tol : float
     needs : dict
         What a grid has to serve, see `_needs`.
-    problem, times, saddles, level, known, wanted
+    tol, problem, times, saddles, level, known, wanted
         As for `_Inversion`.
     """
 
-    def __init__(self, tol: float, needs: dict, *of_level):
+    def __init__(self, needs: dict, *of_level):
         super().__init__(*of_level)
-        self.tol, self.needs = tol, needs
+        self.needs = needs
 
     def _windows_of_later(self, begin, end):
         """One window from where the probability is no longer small."""

@@ -394,7 +394,10 @@ def _require_resolved(scene, ends, distance):
 
 
 def inverted(
-    problem: PlaneProblem, times: np.ndarray, wanted: dict[tuple, np.ndarray] | None = None
+    problem: PlaneProblem,
+    times: np.ndarray,
+    tol: float,
+    wanted: dict[tuple, np.ndarray] | None = None,
 ) -> Callable[..., np.ndarray]:
     """Prepare the inversion of the transform, on contours that serve all intervals of its grids.
 
@@ -403,6 +406,8 @@ def inverted(
     problem : PlaneProblem
     times : numpy.ndarray, shape (k,)
         Increasing, positive.
+    tol : float
+        Absolute error wanted, for fits of the transform.
     wanted : dict, optional
         From these intervals to the times at which they are to be solved, boolean arrays of the
         shape (k,); all unless given.
@@ -419,7 +424,7 @@ def inverted(
     wanted = wanted or dict.fromkeys(known, np.full(count, True))
     counts = np.array([wanted[levels] & (of.bound >= least) for levels, of in known.items()])
     here, begin = wanted[problem.levels], np.searchsorted(own.bound, least)
-    solve = contour_solver(problem, times, 0.0, in_common(list(known.values()), counts))
+    solve = contour_solver(problem, times, tol, in_common(list(known.values()), counts))
     nothing = np.array([np.zeros(count), np.ones(count)])
 
     def solved(resolution, first=None):

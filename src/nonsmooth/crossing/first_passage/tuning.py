@@ -23,6 +23,17 @@ class Contours:
 
 
 @dataclass(frozen=True)
+class ContourFits:
+    """Rational fits of a transform to its values at some nodes of contours."""
+
+    period: int = 8  # chosen: nodes that are dealt with alike ...
+    first: tuple[int, ...] = (0, 4)  # chosen: ... of which these are evaluated first, ...
+    then: tuple[int, ...] = (2, 6, 1, 5, 3, 7)  # derived: ... and these one by one, in the middle
+    share: float = 0.05  # chosen: part of the tolerance by which a probability may change last
+    closeness: float = 1e-3  # chosen: of a fit to the values, over what they may change
+
+
+@dataclass(frozen=True)
 class SaddlePoints:
     """Search for the saddle point of exp(z t) F(z) / z on the axis, and for usable contours.
 
@@ -336,6 +347,7 @@ class TimeStepping:
 
 
 CONTOURS = Contours()
+CONTOUR_FITS = ContourFits()
 SADDLE_POINTS = SaddlePoints()
 INVERSION = Inversion()
 VERTICAL_LINES = VerticalLines()

@@ -20,7 +20,7 @@ def test_marching_agrees_with_the_transform():
     """
     times = np.array([6.0, 7.0, 8.0])
     problem = PlaneProblem(OBSTACLE, -0.8, 1.2, times)
-    march, invert = stepped(problem, times), inverted(problem, times)
+    march, invert = stepped(problem, times), inverted(problem, times, 0.0)
     marched, transformed = march((1, 1, 1, 0)), invert((1, 1, 1, 1))
     allowed = sum(
         np.abs(march(at) - marched) for at in [(2, 1, 1, 0), (1, 2, 1, 0), (1, 1, 2, 0)]
@@ -84,5 +84,5 @@ def test_contours_are_accurate_once_they_are_tame():
     late = times[bend]
     problem = PlaneProblem(COLORED_FRICTION, -0.6, 0.6, late)
     marched = stepped(problem, late)((2, 2, 1, 2))
-    transformed = inverted(problem, late)((2, 2, 0, 1))
+    transformed = inverted(problem, late, 0.0)((2, 2, 0, 1))
     assert np.max(np.abs(marched - transformed)) < TOLERANCE
