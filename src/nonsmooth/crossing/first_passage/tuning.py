@@ -318,7 +318,7 @@ class TimeStepping:
 
     until: float = 10.0  # chosen: last time, in relaxation times; later the transform is tame
     latest: float = 40.0  # chosen: last time where contours miss the tolerance, or it is near ...
-    near: float = 10.0  # chosen: ... as of at most so many times one that needs steps
+    near: float = 8.0  # chosen: ... as of at most so many times one that needs steps
     narrow: float = 3.0  # chosen: an interval's length, in ways that int g goes in a relaxation
     #                      time, up to which steps are faster than contours
     ratio: float = 2.0  # chosen: ratio of the widths of neighbouring elements in x
