@@ -16,5 +16,5 @@ is `docs/methods/first_passage.md`; to add a problem see
 - `inversion.contour_solver`: the inverse Laplace transform for many times.
 - `vertical_lines.inverted`: the same by rational fits, for one variable.
 - `saddle_points.saddle_points`, `contours.hyperbola`, `contours.through_saddle`,
-  `contours.inverted`: its parts.
+  `contours.inverted`, `contours.inverted_together`: its parts.
 """

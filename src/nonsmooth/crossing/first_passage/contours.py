@@ -162,8 +162,7 @@ def inverted(
 
 def inverted_together(
     transform: Callable[[complex], complex],
-    contours: Sequence[tuple[Contour, np.ndarray]],
-    negligible: float,
+    contours: Sequence[tuple[Contour, np.ndarray, float]],
     accuracy: float,
 ) -> list[np.ndarray]:
     """Invert a transform on several contours, with a rational fit in the place of most values.
@@ -175,10 +174,9 @@ def inverted_together(
     ----------
     transform : callable
         F, real on the real axis.
-    contours : sequence of (Contour, numpy.ndarray)
-        Each with the times that it serves, increasing.
-    negligible : float
-        Relative to the first term, at the first time.
+    contours : sequence of (Contour, numpy.ndarray, float)
+        Each with the times that it serves, increasing, and the size of negligible terms, relative
+        to the first one, at the first time.
     accuracy : float
         Absolute; what the last fit may change. With 0 no value is fitted.
 
@@ -188,7 +186,7 @@ def inverted_together(
         The inverse at the times of each contour.
     """
     fits = tuning.CONTOUR_FITS
-    sampled = [_Sampled.begun(transform, *one, negligible) for one in contours]
+    sampled = [_Sampled.begun(transform, *one) for one in contours]
     tolerance = fits.closeness * accuracy
     before = _filled(sampled, tolerance)
     for place in fits.then:

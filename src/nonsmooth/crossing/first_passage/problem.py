@@ -237,7 +237,8 @@ class LaplaceProblem(FirstPassageProblem):
         resolution : object
             That of a level.
         times : numpy.ndarray, shape (k,)
-            Times of a window, increasing; z will be of the size of their inverses.
+            Times of a window, or of all those that hyperbolas serve, increasing; z will be of the
+            size of their inverses.
         rarity : float
             If the settings are `relative`: probabilities from exp(-rarity) on are wanted to
             relative accuracy.

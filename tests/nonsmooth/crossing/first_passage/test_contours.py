@@ -40,6 +40,7 @@ class Counted:
         self.poles, self.evaluated = poles, 0
 
     def __call__(self, z):
+        """Evaluate it once more."""
         self.evaluated += 1
         return np.exp(-np.sqrt(z)) + sum(self.term(z, pole) for pole in self.poles)
 
@@ -63,7 +64,7 @@ NEGLIGIBLE = 1e-9  # of a term; those that are left out fall geometrically
 def laid():
     """Hyperbolas of neighbouring intervals, that invert F / z to 1e-9, and their times."""
     return [
-        (hyperbola(first, last, 24, 0.3).over_z(), np.geomspace(first, last, 9))
+        (hyperbola(first, last, 24, 0.3).over_z(), np.geomspace(first, last, 9), NEGLIGIBLE)
         for first, last in INTERVALS
     ]
 
@@ -71,8 +72,8 @@ def laid():
 def alone(contours):
     """How often a transform is evaluated for each contour alone."""
     transform = Counted()
-    for contour, times in contours:
-        inverted(transform, contour, times, NEGLIGIBLE)
+    for contour in contours:
+        inverted(transform, *contour)
     return transform.evaluated
 
 
@@ -81,8 +82,8 @@ def test_fits_along_contours_change_less_than_was_asked():
     contours, taken = laid(), []
     for accuracy in (1e-3, 1e-5, 1e-7):
         transform = Counted()
-        found = inverted_together(transform, contours, NEGLIGIBLE, accuracy)
-        for (_, times), values in zip(contours, found, strict=True):
+        found = inverted_together(transform, contours, accuracy)
+        for (_, times, _), values in zip(contours, found, strict=True):
             assert np.max(np.abs(values - transform.inverse(times))) < accuracy + 10 * NEGLIGIBLE
         taken.append(transform.evaluated)
     assert taken[0] < taken[1] < taken[2] < alone(contours)
@@ -92,8 +93,8 @@ def test_fits_along_contours_change_less_than_was_asked():
 def test_without_an_accuracy_no_value_is_fitted():
     """All nodes are evaluated, up to three more than on each contour alone."""
     transform, contours = Counted(), laid()
-    found = inverted_together(transform, contours, NEGLIGIBLE, 0.0)
-    for (_, times), values in zip(contours, found, strict=True):
+    found = inverted_together(transform, contours, 0.0)
+    for (_, times, _), values in zip(contours, found, strict=True):
         assert np.max(np.abs(values - transform.inverse(times))) < 10 * NEGLIGIBLE
     assert 0 <= transform.evaluated - alone(contours) <= 3 * len(contours)
 
@@ -103,11 +104,11 @@ def test_poles_between_the_first_nodes_are_seen():
 
     A fit to every fourth node cannot know it: nodes are added until the fit does.
     """
-    ((contour, times), *_), smooth = laid(), Counted()
-    nodes = contour.nodes
+    first, smooth = laid()[:1], Counted()
+    nodes = first[0][0].nodes
     transform = Counted([nodes[k] - abs(nodes[k + 1] - nodes[k]) for k in (2, 6, 9)])
     found, every, _ = (
-        inverted_together(of, [(contour, times)], NEGLIGIBLE, accuracy)[0]
+        inverted_together(of, first, accuracy)[0]
         for of, accuracy in ((transform, 1e-3), (Counted(transform.poles), 0.0), (smooth, 1e-3))
     )
     assert np.max(np.abs(found - every)) < 1e-3
