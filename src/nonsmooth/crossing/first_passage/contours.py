@@ -162,23 +162,25 @@ def inverted(
 
 def inverted_together(
     transform: Callable[[complex], complex],
-    contours: Sequence[tuple[Contour, np.ndarray, float]],
+    contours: Sequence[tuple[Contour, np.ndarray]],
+    negligible: float,
     accuracy: float,
 ) -> list[np.ndarray]:
     """Invert a transform on several contours, with a rational fit in the place of most values.
 
-    Nodes are added to all contours until a fit agrees with the one before, at all nodes that had no
+    Nodes are added to a contour until a fit agrees with the one before, at all nodes that had no
     values then.
 
     Parameters
     ----------
     transform : callable
         F, real on the real axis.
-    contours : sequence of (Contour, numpy.ndarray, float)
-        Each with the times that it serves, increasing, and the size of negligible terms, relative
-        to the first one, at the first time.
+    contours : sequence of (Contour, numpy.ndarray)
+        Each with the times that it serves, increasing.
+    negligible : float
+        Size of a term that ends a contour, relative to the first one, at the first time.
     accuracy : float
-        Absolute; what the last fit may change. With 0 no value is fitted.
+        Absolute; what the last fit may change.
 
     Returns
     -------
@@ -186,18 +188,18 @@ def inverted_together(
         The inverse at the times of each contour.
     """
     fits = tuning.CONTOUR_FITS
-    sampled = [_Sampled.begun(transform, *one) for one in contours]
-    tolerance = fits.closeness * accuracy
-    before = _filled(sampled, tolerance)
+    sampled = [_Sampled.begun(transform, *one, negligible) for one in contours]
+    values, changes = _filled(sampled, fits.closeness * accuracy), [np.inf] * len(sampled)
     for place in fits.then:
-        for one in sampled:
-            one.evaluate(transform, place)
-        filled = _filled(sampled, tolerance)
-        changes = [one.change(*v) for one, *v in zip(sampled, before, filled, strict=True)]
-        if np.max(changes) <= accuracy:
+        unsettled = [one for one, c in zip(sampled, changes, strict=True) if not c <= accuracy]
+        if not unsettled:
             break
-        before = filled
-    return [one.contour.invert(v, one.times) for one, v in zip(sampled, filled, strict=True)]
+        if sum(one.evaluate(transform, place) for one in unsettled):
+            before, values = values, _filled(sampled, fits.closeness * accuracy)
+            changes = [
+                one.change(old, new) for one, old, new in zip(sampled, before, values, strict=True)
+            ]
+    return [one.contour.invert(v, one.times) for one, v in zip(sampled, values, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -238,10 +240,12 @@ class _Sampled:
         return found
 
     def evaluate(self, transform, place):
-        """Evaluate one node of each period."""
-        for k in range(place, len(self.known), tuning.CONTOUR_FITS.period):
-            if not self.known[k]:
-                self.known[k], self.values[k] = True, transform(self.contour.nodes[k])
+        """Evaluate one node of each period; return how many were not known."""
+        new = np.arange(place, len(self.known), tuning.CONTOUR_FITS.period)
+        new = new[~self.known[new]]
+        self.values[new] = [transform(z) for z in self.contour.nodes[new]]
+        self.known[new] = True
+        return len(new)
 
     def change(self, before, after):
         """Bound what is changed of the inverse."""
@@ -252,11 +256,15 @@ class _Sampled:
 def _filled(sampled, tolerance):
     """Values along all contours; those that are not known are taken from a fit to the others."""
     if all(one.known.all() for one in sampled):
-        return [one.values for one in sampled]
+        return [one.values.copy() for one in sampled]
     z = np.concatenate([one.contour.nodes[one.known] for one in sampled])
     values = np.concatenate([one.values[one.known] for one in sampled])
+    largest = np.max(np.abs(values))
+    if not np.isfinite(largest):
+        return [np.where(one.known, one.values, np.nan) for one in sampled]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # that it may be too inaccurate is seen
-        # with the mirror images, the fit is real on the real axis, too
-        fit = AAA(np.append(z, z.conj()), np.append(values, values.conj()), rtol=tolerance)
+        # poles and their mirror images are found at the same time
+        z, values = np.append(z, z.conj()), np.append(values, values.conj())
+        fit = AAA(z, values, rtol=tolerance / max(largest, tolerance))
         return [np.where(one.known, one.values, fit(one.contour.nodes)) for one in sampled]

@@ -11,9 +11,10 @@ evaluated. For two variables there are up to four stages with increasing time:
 - In the end the survival probability is small. It is computed from (1 - F(z)) / z, and the
   hyperbola crosses the axis at the leading pole instead of 0, which keeps its relative error small.
 
-For one variable, F is good enough to be fitted by rational functions on vertical lines
-(`vertical_lines`): in the rise through a saddle point, and later on one line for all times but
-those of the end.
+All hyperbolas of the third kind share values of F, most of which come from a rational fit
+(`contours.inverted_together`). For one variable, F is good enough to be fitted on vertical lines,
+and inverted by the poles of the fits (`vertical_lines`): in the rise through a saddle point, and
+later on one line for all times but those of the end.
 """
 
 from collections.abc import Callable, Sequence
@@ -127,7 +128,8 @@ class _Inversion:
         late = begin + self._first_small(self.known[1, begin:]) if ends else len(self.times)
         windows = self._windows_of_later(begin, late)
         risen = windows[0][0].start if windows else late
-        self._before_end(begin, risen, windows)
+        self._rise(begin, risen)
+        self._later(windows)
         if ends:
             self._end(risen)
         return self.found, self.solved, self.inexact
@@ -150,66 +152,57 @@ class _Inversion:
         self.found[row, here], self.found[1 - row, here] = values, 1 - values
         self.solved[here] = True
 
-    def _before_end(self, begin, risen, windows):
-        """Solve windows in which the probability is still small, and later ones on hyperbolas."""
-        laid, settings = self._contours_of_rise(begin, risen), self.problem.settings
-        if settings.relative:
-            self._one_by_one(laid, begin)
-            laid = []
-        else:
-            self._store(slice(begin), np.zeros(begin))
-        for here, kind in windows:
-            if self.wanted[here].any():
-                laid.append((here, self._hyperbola(here, kind), settings.steady_truncation))
-        if laid:
-            self._together(laid)
-
-    def _contours_of_rise(self, begin, end):
-        """Lay contours for windows in which the probability is still small.
-
-        Each comes with its window, and the size of terms at which it ends.
-        """
-        settings, saddles, laid = self.problem.settings, self.saddles, []
+    def _rise(self, begin, end):
+        """Solve windows in which the probability is still small, the last first."""
+        settings, saddles = self.problem.settings, self.saddles
         turns = np.cumsum(np.diff(saddles.tilt, prepend=saddles.tilt[0]) != 0) + 1
-        for here in _windows(
+        windows = _windows(
             begin,
             end,
             (self.times, settings.window),
             (np.exp(saddles.bound), tuning.INVERSION.growth),
             (turns, 1),
-        ):
-            if self.wanted[here].any():
-                # at the saddle point of the last time the integrand is small at earlier times, too
-                at = [v[here.stop - 1] for v in (saddles.place, saddles.width, saddles.tilt)]
-                contour = contours.through_saddle(at[0], at[1], self.level.spacing, at[2])
-                laid.append((here, contour, settings.rise_truncation))
-        return laid
-
-    def _one_by_one(self, laid, begin):
-        """Solve windows whose small probabilities are wanted to relative accuracy, the last first.
-
-        Transforms are asked for in the order of times.
-        """
-        negligible, least = begin, tuning.INVERSION.surely * self.problem.settings.least_probability
-        rise = [(_of_probability(self._transform(one[0])), *one) for one in laid]
-        for integrand, here, contour, truncation in reversed(rise):
-            self._store(here, contours.inverted(integrand, contour, self.times[here], truncation))
+        )
+        # transforms are asked for in the order of times
+        rise = [
+            (here, _of_probability(self._transform(here)))
+            for here in windows
+            if self.wanted[here].any()
+        ]
+        negligible = begin
+        for here, integrand in reversed(rise):
+            # at the saddle point of the last time the integrand is small at earlier times, too
+            last = here.stop - 1
+            contour = contours.through_saddle(
+                saddles.place[last], saddles.width[last], self.level.spacing, saddles.tilt[last]
+            )
+            self._store(
+                here,
+                contours.inverted(integrand, contour, self.times[here], settings.rise_truncation),
+            )
             # The probability increases with time. If it is negligible here, although its bound is
             # not, then it is negligible at all earlier times, too.
-            if abs(self.found[0, here.start]) < least:
+            least = tuning.INVERSION.surely * settings.least_probability
+            if settings.relative and abs(self.found[0, here.start]) < least:
                 negligible = here.start
                 break
         self._store(slice(negligible), np.zeros(negligible))
 
-    def _together(self, laid):
-        """Solve windows with values of F that serve all of their contours."""
-        transform = self._transform(slice(laid[0][0].start, laid[-1][0].stop))
+    def _later(self, windows):
+        """Solve windows, each on a hyperbola of the kind given with it."""
+        fits = tuning.CONTOUR_FITS
+        windows = [(here, kind) for here, kind in windows if self.wanted[here].any()]
+        if not windows:
+            return
+        transform = self._transform(slice(windows[0][0].start, windows[-1][0].stop))
+        laid = [(self._hyperbola(*window).over_z(), self.times[window[0]]) for window in windows]
         found = contours.inverted_together(
             transform,
-            [(contour.over_z(), self.times[here], least) for here, contour, least in laid],
-            tuning.CONTOUR_FITS.share * self.tol,
+            laid,
+            self.problem.settings.steady_truncation,
+            fits.share * min(self.tol, fits.loosest),
         )
-        for (here, *_), values in zip(laid, found, strict=True):
+        for (here, _), values in zip(windows, found, strict=True):
             self._store(here, values)
 
     def _end(self, risen):
@@ -248,11 +241,6 @@ class _OnVerticalLines(_Inversion):
     def __init__(self, needs: dict, *of_level):
         super().__init__(*of_level)
         self.needs = needs
-
-    def _before_end(self, begin, risen, windows):
-        """Solve windows in which the probability is still small, and a later one."""
-        self._rise(begin, risen)
-        self._later(windows)
 
     def _windows_of_later(self, begin, end):
         """One window from where the probability is no longer small."""

@@ -29,8 +29,9 @@ class ContourFits:
     period: int = 8  # chosen: nodes that are dealt with alike ...
     first: tuple[int, ...] = (0, 4)  # chosen: ... of which these are evaluated first, ...
     then: tuple[int, ...] = (2, 6, 1, 5, 3, 7)  # derived: ... and these one by one, in the middle
-    share: float = 0.05  # chosen: part of the tolerance by which a probability may change last
-    closeness: float = 1e-3  # chosen: of a fit to the values, over what they may change
+    share: float = 0.02  # chosen: part of the tolerance by which a probability may change last, ...
+    loosest: float = 1e-4  # chosen: ... of this one if it is larger: the error may be far below it
+    closeness: float = 1e-3  # chosen: error of a fit at the values, over that change
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import pytest
 import nonsmooth as ns
 from nonsmooth.crossing.first_passage import tuning
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
-from nonsmooth.crossing.first_passage.plane import PlaneProblem, SharedGrids
+from nonsmooth.crossing.first_passage.plane import PlaneProblem, SharedGrids, inverted
 from nonsmooth.errors import ToleranceError
 from nonsmooth.kinetic.bases import fields
 from references import COLORED_FRICTION, OBSTACLE, PLASTIC
@@ -141,3 +141,18 @@ def test_thresholds_beside_the_start_are_refused(scene):
 def test_thresholds_that_the_driven_variable_crosses_are_not():
     """The grid is made for the shortest time in that variable."""
     PlaneProblem(PLASTIC.with_n(5), -1e-3, 1e-3, np.array([1e-3]))
+
+
+@pytest.mark.parametrize("tol", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("count", [None, 5])
+def test_fitted_values_of_the_transform_are_nearly_exact(tol, count):
+    """Against values at all nodes, for all times or only the first of them.
+
+    Two fits that agree may share an error: five times what the last one changes is a tenth of tol.
+    """
+    times, level = np.geomspace(8, 160, 9), 1.5
+    problem = PlaneProblem(OBSTACLE, -level, level, times)
+    fitted, every = (inverted(problem, times, asked) for asked in (tol, 0.0))
+    settings = tuning.CONTOUR_FITS
+    apart = np.abs(fitted((0, 0, 0, 1), count) - every((0, 0, 0, 1), count))
+    assert 0 < apart.max() < 5 * settings.share * min(tol, settings.loosest)
