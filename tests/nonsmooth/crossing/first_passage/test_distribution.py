@@ -5,7 +5,7 @@ import pytest
 from scipy.special import ndtr
 
 import nonsmooth as ns
-from nonsmooth.crossing.first_passage import distribution
+from nonsmooth.crossing.first_passage import distribution, tuning
 from nonsmooth.crossing.first_passage.distribution import deterministic_crossing
 from nonsmooth.crossing.first_passage.time_stepping import stepped
 from nonsmooth.errors import SceneError, ToleranceError
