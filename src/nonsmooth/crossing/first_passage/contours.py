@@ -7,9 +7,9 @@ interval, with the parameters of Weideman and Trefethen, Math. Comp. 76 (2007) 1
 small, a hyperbola through the saddle point of exp(z t) F(z) keeps the relative error small.
 
 The nodes are as close to each other as exp(z t) requires. F alone changes less, and hyperbolas of
-neighbouring intervals cover the same part of the plane. There F is evaluated at some nodes of all
-hyperbolas, and at the others it is a rational function fitted to these values by the algorithm AAA
-(Nakatsukasa, Sete and Trefethen, SIAM J. Sci. Comput. 40 (2018) A1494).
+neighbouring intervals cover the same part of the plane. `inverted_together` evaluates F at some
+nodes of several hyperbolas. At the others it takes a rational function fitted to these values by
+the algorithm AAA (Nakatsukasa, Sete and Trefethen, SIAM J. Sci. Comput. 40 (2018) A1494).
 """
 
 import warnings
@@ -180,7 +180,7 @@ def inverted_together(
     negligible : float
         Size of a term that ends a contour, relative to the first one, at the first time.
     accuracy : float
-        Absolute; what the last fit may change.
+        Absolute; what the last fit may change. If it is 0, all nodes are evaluated.
 
     Returns
     -------
@@ -189,12 +189,15 @@ def inverted_together(
     """
     fits = tuning.CONTOUR_FITS
     sampled = [_Sampled.begun(transform, *one, negligible) for one in contours]
+    if accuracy == 0:
+        for one in sampled:
+            one.evaluate(transform, fits.then)
     values, changes = _filled(sampled, fits.closeness * accuracy), [np.inf] * len(sampled)
-    for place in fits.then:
+    for count in range(1, len(fits.then) + 1):
         unsettled = [one for one, c in zip(sampled, changes, strict=True) if not c <= accuracy]
         if not unsettled:
             break
-        if sum(one.evaluate(transform, place) for one in unsettled):
+        if sum(one.evaluate(transform, fits.then[:count]) for one in unsettled):
             before, values = values, _filled(sampled, fits.closeness * accuracy)
             changes = [
                 one.change(old, new) for one, old, new in zip(sampled, before, values, strict=True)
@@ -239,10 +242,10 @@ class _Sampled:
         found.known[list(values)], found.values[list(values)] = True, list(values.values())
         return found
 
-    def evaluate(self, transform, place):
-        """Evaluate one node of each period; return how many were not known."""
-        new = np.arange(place, len(self.known), tuning.CONTOUR_FITS.period)
-        new = new[~self.known[new]]
+    def evaluate(self, transform, places):
+        """Evaluate the nodes at some places of each period; return how many were not known."""
+        at = np.arange(len(self.known)) % tuning.CONTOUR_FITS.period
+        new = np.flatnonzero(np.isin(at, places) & ~self.known)
         self.values[new] = [transform(z) for z in self.contour.nodes[new]]
         self.known[new] = True
         return len(new)
@@ -263,8 +266,10 @@ def _filled(sampled, tolerance):
     if not np.isfinite(largest):
         return [np.where(one.known, one.values, np.nan) for one in sampled]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # that it may be too inaccurate is seen
-        # poles and their mirror images are found at the same time
+        warnings.simplefilter(
+            "ignore", RuntimeWarning
+        )  # of a fit that is inaccurate; the next one shows that
+        # F is real on the axis: its values at the mirror images are known, too
         z, values = np.append(z, z.conj()), np.append(values, values.conj())
         fit = AAA(z, values, rtol=tolerance / max(largest, tolerance))
         return [np.where(one.known, one.values, fit(one.contour.nodes)) for one in sampled]

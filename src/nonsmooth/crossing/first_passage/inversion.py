@@ -11,7 +11,7 @@ evaluated. For two variables there are up to four stages with increasing time:
 - In the end the survival probability is small. It is computed from (1 - F(z)) / z, and the
   hyperbola crosses the axis at the leading pole instead of 0, which keeps its relative error small.
 
-All hyperbolas of the third kind share values of F, most of which come from a rational fit
+All hyperbolas of the third stage share values of F, most of which come from a rational fit
 (`contours.inverted_together`). For one variable, F is good enough to be fitted on vertical lines,
 and inverted by the poles of the fits (`vertical_lines`): in the rise through a saddle point, and
 later on one line for all times but those of the end.

@@ -237,11 +237,11 @@ class LaplaceProblem(FirstPassageProblem):
         resolution : object
             That of a level.
         times : numpy.ndarray, shape (k,)
-            Times of a window, or of all windows that hyperbolas serve, increasing; z will be of the
-            size of their inverses.
+            Times of a window, or of all windows between the rise and the end, increasing; z will be
+            of the size of their inverses.
         rarity : float
             If the settings are `relative`: probabilities from exp(-rarity) on are wanted to
-            relative accuracy. That of the first window.
+            relative accuracy. At the first of the times.
         """
 
 

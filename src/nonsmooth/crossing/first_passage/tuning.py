@@ -28,10 +28,18 @@ class ContourFits:
 
     period: int = 8  # chosen: nodes that are dealt with alike ...
     first: tuple[int, ...] = (0, 4)  # chosen: ... of which these are evaluated first, ...
-    then: tuple[int, ...] = (2, 6, 1, 5, 3, 7)  # derived: ... and these one by one, in the middle
-    share: float = 0.02  # chosen: part of the tolerance by which a probability may change last, ...
-    loosest: float = 1e-4  # chosen: ... of this one if it is larger: the error may be far below it
-    closeness: float = 1e-3  # chosen: error of a fit at the values, over that change
+    then: tuple[int, ...] = (
+        2,
+        6,
+        1,
+        5,
+        3,
+        7,
+    )  # derived: ... and these one by one: each halves gaps
+    share: float = 0.02  # chosen: largest last change of a probability, over the tolerance
+    # chosen: a looser tolerance counts as this one, because stated errors may be far below it
+    loosest: float = 1e-4
+    closeness: float = 1e-3  # chosen: error of a fit at the known values, over that largest change
 
 
 @dataclass(frozen=True)

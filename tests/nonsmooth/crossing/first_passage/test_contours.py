@@ -67,7 +67,7 @@ def alone(contours):
 
 
 def test_fits_along_contours_change_less_than_was_asked():
-    """Fewer values are computed for less, and always less than each contour takes alone."""
+    """A looser accuracy takes fewer values, and any takes fewer than each contour alone."""
     contours, taken = laid(), []
     for accuracy in (1e-3, 1e-5, 1e-7):
         transform = Counted()
@@ -104,9 +104,9 @@ def test_short_contours_are_summed(count):
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("places", [(2, 6, 9), (1,), (2,), (5,), (10,)], ids=str)
 def test_poles_between_the_first_nodes_are_seen(places, accuracy, which):
-    """Each is as far from the contour as the nodes are from each other, where one is left out.
+    """Each is beside a node that the first fit leaves out, as far from it as the next node.
 
-    A fit to every fourth node cannot know it. At all times the inverse is as accurate as was asked.
+    At all times the inverse is as accurate as was asked.
     """
     contours = laid()[which : which + 1]
     nodes = contours[0][0].nodes

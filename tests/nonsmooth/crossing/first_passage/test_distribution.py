@@ -108,7 +108,7 @@ class TestEarlyTimes:
 
     @pytest.mark.parametrize(("part", "goes_on"), [(0.99, True), (1.01, False)])
     def test_steps_go_on_where_the_last_time_is_near(self, stepped_at, part, goes_on):
-        """It would need none alone, and is at most so many times as late as one that does."""
+        """It would need none alone, and is at most `near` times as late as one that does."""
         times = np.array([8.0 / (part * tuning.TIME_STEPPING.near), 8.0])
         deterministic_crossing(COLORED_FRICTION, np.array([[-1.0, 1.0]]), times, 1e-2)
         assert stepped_at == (times if goes_on else times[:1]).tolist()
