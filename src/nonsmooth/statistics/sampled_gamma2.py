@@ -254,7 +254,7 @@ def sampled_gamma2(
             "or method='deterministic'"
         )
     paths = fewer = MONTE_CARLO.pilot_paths
-    step, doubled, known = coarse_step(scene), 0, None
+    step, doubled = coarse_step(scene), 0
     order = registry.scheme(scene).weak_order(scene)
 
     def enough(run):
@@ -263,7 +263,7 @@ def sampled_gamma2(
 
     for attempt in range(MONTE_CARLO.attempts):
         own = Sampling(step, paths, labelled(seed, attempt), threads=threads)
-        doubled, times, found, (rest, _), _ = _settled(scene, own, doubled, enough, known)
+        doubled, times, found, (rest, _), _ = _settled(scene, own, doubled, enough)
         halving = Sampling(step, fewer, labelled(own.seed, "halving"), threads=threads)
         bias, spread = gamma2_bias(scene, times, halving)
         deviation = float(np.hypot(found.gamma2_error, spread))
@@ -316,7 +316,7 @@ def sampled_mean(
         If `tol` is not met, or the slope of the variance does not settle.
     """
     own, paths, step = labelled(seed, "mean"), MONTE_CARLO.pilot_paths, short_step(scene)
-    doubled, known = 0, None
+    doubled = 0
     order = registry.scheme(scene).weak_order(scene)
 
     def enough(run):
@@ -324,7 +324,7 @@ def sampled_mean(
 
     for _ in range(MONTE_CARLO.attempts):
         sampling = Sampling(step, paths, own, threads=threads)
-        doubled, times, found, _, (rest, _) = _settled(scene, sampling, doubled, enough, known)
+        doubled, times, found, _, (rest, _) = _settled(scene, sampling, doubled, enough)
         halving = replace(sampling.labelled("halving"), paths=halving_paths(paths))
         bias, spread = _bias_of_slope(mean_bias, scene, times, halving)
         deviation = math.hypot(found.mean_error, spread)
@@ -373,14 +373,12 @@ def first_times(scene: Scene) -> tuple[float, ...]:
     return tuple(max(1.0, settled.relaxed / (rate * first)) * t for t in settled.times)
 
 
-def _settled(
-    scene, sampling, begun: int, enough: Callable[[_Settled], bool], known: tuple | None
-) -> _Settled:
+def _settled(scene, sampling, begun: int, enough: Callable[[_Settled], bool]) -> _Settled:
     """Lengthen the times until the slope of the variance depends neither on them nor on the start.
 
     They are doubled, `begun` times at first. What is left of the rests, of which the caller tells
     whether it is little enough, follows from two windows before the first time, in the last three
-    quarters of the way to it. A refusal keeps what is `known` from fewer paths.
+    quarters of the way to it.
 
     Paths that never leave the well they start in settle, too, but on the wrong slope. To notice
     this, a few paths start from each well of the potentials (the scouts); all slopes have to agree.
@@ -406,11 +404,9 @@ def _settled(
         if forgotten
         else f"paths from {len(elsewhere)} wells of the potentials still differ"
     )
-    told = f"; fewer paths gave {known[0]:.6g} with an error of {known[1]:.1e}" if known else ""
     raise ToleranceError(
         f"the growth rate of the variance has not settled by t = {times[-1]:g}: {changes}; "
-        f"the scene mixes slowly, or int_0^t g has no such rate{told}",
-        known,
+        "the scene mixes slowly, or int_0^t g has no such rate"
     )
 
 
