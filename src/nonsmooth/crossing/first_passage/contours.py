@@ -149,15 +149,24 @@ def inverted(
     -------
     numpy.ndarray, shape (t,)
     """
-    values: list[complex] = []
-    for z, weight in zip(contour.nodes, contour.weights, strict=True):
-        values.append(transform(z))
-        term = np.abs(weight * values[-1]) * np.exp(z.real * times[0])
-        if len(values) == 1:
+    values = _until_negligible(transform, contour, times, negligible, range(len(contour.nodes)))
+    return contour.until(len(values)).invert(np.array(list(values.values())), times)
+
+
+def _until_negligible(transform, contour, times, negligible, chosen):
+    """Evaluate chosen nodes and the last one, until the terms are negligible: values by nodes."""
+    values: dict[int, complex] = {}
+    last = min(len(contour.nodes), tuning.CONTOURS.truncation_most) - 1
+    for k in range(last + 1):
+        if k not in chosen and k != last:
+            continue
+        values[k] = transform(contour.nodes[k])
+        term = np.abs(contour.weights[k] * values[k]) * np.exp(contour.nodes[k].real * times[0])
+        if k == 0:
             largest = term
-        elif term < negligible * largest or len(values) == tuning.CONTOURS.truncation_most:
+        elif term < negligible * largest:
             break
-    return contour.until(len(values)).invert(np.array(values), times)
+    return values
 
 
 def inverted_together(
@@ -226,20 +235,11 @@ class _Sampled:
     @classmethod
     def begun(cls, transform, contour, times, negligible):
         """Evaluate some nodes, until the terms are negligible."""
-        values: dict[int, complex] = {}
-        largest, period = 0.0, tuning.CONTOUR_FITS.period
-        last = min(len(contour.nodes), tuning.CONTOURS.truncation_most) - 1
-        for k in range(last + 1):
-            if k % period not in tuning.CONTOUR_FITS.first and k != last:
-                continue
-            values[k] = transform(contour.nodes[k])
-            term = np.abs(contour.weights[k] * values[k]) * np.exp(contour.nodes[k].real * times[0])
-            if k == 0:
-                largest = term
-            elif term < negligible * largest:
-                break
-        found = cls(contour.until(k + 1), times, np.full(k + 1, False), np.zeros(k + 1, complex))
-        found.known[list(values)], found.values[list(values)] = True, list(values.values())
+        chosen = range(0, len(contour.nodes), tuning.CONTOUR_FITS.first)
+        values = _until_negligible(transform, contour, times, negligible, chosen)
+        at, count = list(values), max(values) + 1
+        found = cls(contour.until(count), times, np.full(count, False), np.zeros(count, complex))
+        found.known[at], found.values[at] = True, list(values.values())
         return found
 
     def evaluate(self, transform, places):
@@ -259,16 +259,15 @@ class _Sampled:
 def _filled(sampled, tolerance):
     """Values along all contours; those that are not known are taken from a fit to the others."""
     if all(one.known.all() for one in sampled):
-        return [one.values.copy() for one in sampled]
+        return [one.values for one in sampled]
     z = np.concatenate([one.contour.nodes[one.known] for one in sampled])
     values = np.concatenate([one.values[one.known] for one in sampled])
     largest = np.max(np.abs(values))
     if not np.isfinite(largest):
         return [np.where(one.known, one.values, np.nan) for one in sampled]
     with warnings.catch_warnings():
-        warnings.simplefilter(
-            "ignore", RuntimeWarning
-        )  # of a fit that is inaccurate; the next one shows that
+        # of a fit that is inaccurate; the next one shows that
+        warnings.simplefilter("ignore", RuntimeWarning)
         # F is real on the axis: its values at the mirror images are known, too
         z, values = np.append(z, z.conj()), np.append(values, values.conj())
         fit = AAA(z, values, rtol=tolerance / max(largest, tolerance))

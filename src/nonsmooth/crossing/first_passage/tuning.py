@@ -26,16 +26,10 @@ class Contours:
 class ContourFits:
     """Rational fits of a transform to its values at some nodes of contours."""
 
-    period: int = 8  # chosen: nodes that are dealt with alike ...
-    first: tuple[int, ...] = (0, 4)  # chosen: ... of which these are evaluated first, ...
-    then: tuple[int, ...] = (
-        2,
-        6,
-        1,
-        5,
-        3,
-        7,
-    )  # derived: ... and these one by one: each halves gaps
+    first: int = 4  # chosen: distance of the nodes that are evaluated first
+    # derived: then, of each so many nodes, those at these places one by one: each halves gaps
+    period: int = 8
+    then: tuple[int, ...] = (2, 6, 1, 5, 3, 7)
     share: float = 0.02  # chosen: largest last change of a probability, over the tolerance
     # chosen: a looser tolerance counts as this one, because stated errors may be far below it
     loosest: float = 1e-4
