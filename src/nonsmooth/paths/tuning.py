@@ -150,6 +150,10 @@ class Tilt:
     # fitted: largest theta, in units of gamma times the bound of q; more gives single paths large
     # weights
     bound: float = 1.25
+    # fitted: time for which a shift is kept, in units of the coarsest step; with twice as much for
+    # white noise, which moves the mechanical variables themselves, errors grow by a fifth
+    kept: float = 1.0
+    kept_white: float = 0.5
 
 
 TILT = Tilt()

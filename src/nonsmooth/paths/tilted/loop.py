@@ -2,8 +2,9 @@
 
 Before each kick the normal number xi of a path becomes xi + a, where a may depend on all that has
 happened to the path. The logarithm of the likelihood ratio gains -a xi - a^2 / 2, so that weighted
-averages are exactly those of the scheme without the shift, whatever a is. A path that has reached a
-level is not shifted any more.
+averages are exactly those of the scheme without the shift, whatever a is. Hence a is computed anew
+only after a time in which the state changes little: it costs more than a step. A path that has
+reached a level is not shifted any more.
 """
 
 import math
@@ -46,8 +47,9 @@ from nonsmooth.paths.time_loop import (
 LOG_WEIGHT, REACHED = MARTINGALE, BEFORE
 TOTAL_LOG_WEIGHT = TOTAL_MARTINGALE
 SUMS = 3  # over the paths that have reached the level: their number, weights, and squares of these
-_VALUES, _MONOMIALS = len(STATE), len(STATE) + 5  # rows of the memory that follow the state
-_MEMORY = 64  # rows of the memory
+# Rows of the memory: the state, the values of the polynomials, a, and the monomials.
+_VALUES, _SHIFT, _MONOMIALS = len(STATE), len(STATE) + 4, len(STATE) + 5
+_ROWS = 64
 
 
 def march_tilted(
@@ -140,15 +142,16 @@ def compile_march_tilted_pair(fine: Any, coarse: Any, panel: Panel, tilt: Tilt) 
 
 
 def _memory(tilt):
-    """Rows for the state, the values of the polynomials and the monomials."""
-    assert _MONOMIALS + len(tilt.parent) <= _MEMORY
-    return np.empty((_MEMORY, WIDTH), dtype=tilt.coefficient.dtype)
+    """Memory for the polynomials and the shifts."""
+    assert _MONOMIALS + len(tilt.parent) <= _ROWS
+    number = tilt.coefficient.dtype
+    return np.empty((_ROWS, WIDTH), dtype=number)
 
 
 @kernel
 def _march(s, panel, tilt, memory, lanes, first, last, steps, began, lower, upper, counted, sums):
     words, data, total = of_known_shape(panel)
-    memory = numba.carray(pointer(memory.ctypes), (_MEMORY, WIDTH))
+    memory = numba.carray(pointer(memory.ctypes), (_ROWS, WIDTH))
     normal = 2
     for k in range(first, last):
         mechanical_flow(s, data, k == 0, k == steps, lanes)
@@ -160,7 +163,9 @@ def _march(s, panel, tilt, memory, lanes, first, last, steps, began, lower, uppe
                 if s.normals == 4:
                     normals(words, data[2:], lanes)
                 normal = 0
-            _shift(tilt, data, data, memory, normal, s.step, began + k * s.step, lanes)
+            if _is_due(tilt, k, s.step):
+                _choose(tilt, data, memory, s.step, began + k * s.step, lanes)
+            _shift(data, data, memory, normal, lanes)
             noise_kick(s, data, normal, lanes)
             normal += s.normals
         _notice(data, lanes, lower, upper)
@@ -177,13 +182,15 @@ def _march_pair(
 ):
     words, data, total = of_known_shape(panel)
     _, joined, other_total = of_known_shape(other)
-    memory = numba.carray(pointer(memory.ctypes), (_MEMORY, WIDTH))
+    memory = numba.carray(pointer(memory.ctypes), (_ROWS, WIDTH))
     for k in range(first, last):  # counts the fine steps
         odd = k % 2 == 1
         flow_of_pair(fine, coarse, data, joined, k, steps, lanes)
         if k < 2 * steps:
             normal = draw(fine, words, data, odd, lanes)
-            _shift(tilt, data, joined, memory, normal, fine.step, began + k * fine.step, lanes)
+            if _is_due(tilt, k, fine.step):
+                _choose(tilt, data, memory, fine.step, began + k * fine.step, lanes)
+            _shift(data, joined, memory, normal, lanes)
             join_noise(fine, data, joined, normal, odd, lanes)
             noise_kick(fine, data, normal, lanes)
             if odd:
@@ -207,42 +214,56 @@ def _notice(data, lanes, lower, upper):
 
 
 @inlined
-def _shift(tilt, data, other, memory, normal, step, now, lanes):
-    """Shift normal numbers and add to the logarithm of the likelihood ratio; see `tilt.Guide`.
+def _is_due(tilt, k, step):
+    """Whether shifts are computed anew: after a while, and after paths have been dropped."""
+    return k % max(1, int(tilt.kept / step + 0.5)) == 0 or k % FLUSH == 0
 
-    Neither a path that has reached a level is led any more nor one whose companion in `other` has:
-    what it does alone then happens with the weight that both had on arrival.
-    """
+
+@inlined
+def _choose(tilt, data, memory, step, now, lanes):
+    """Compute by how much normal numbers are shifted; see `tilt.Guide`."""
     number = data[0, 0]
     left = tilt.end - now
     scale = like(number, 1.0 / (tilt.gamma * math.sqrt(left)))
     target = like(number, tilt.target - tilt.side * tilt.mean * left)
     root, side, cap = like(number, math.sqrt(step)), tilt.side, tilt.cap
     late = like(number, math.exp(tilt.haste * (now - tilt.due)))
-    zero, half, bound = like(number, 0.0), like(number, 0.5), like(number, root * tilt.bound)
+    zero, bound = like(number, 0.0), like(number, root * tilt.bound)
     # the hazard rate of the normal law (A. V. Boyd, 1959), to a percent
     slope, inverse = like(number, 1 - 1 / math.pi), like(number, 1 / math.pi**2)
     square = like(number, 2 / math.pi)
-    _evaluate(tilt, data, memory, lanes)
+    _evaluate(tilt, data, memory, late, lanes)
     for i in range(lanes):
         covered = data[BASE, i] + data[DELTA, i] + memory[_VALUES, i]
         away = maximum(fma(-side, covered, target), zero) * scale
         hazard = fma(slope, away, math.sqrt(fma(inverse * away, away, square)))
         q = scale * hazard
         q = side * q * cap / (q + cap)
-        q = where(data[REACHED, i] == zero, where(other[REACHED, i] == zero, q, zero), zero)
         theta = fma(q, memory[_VALUES + 3, i], memory[_VALUES + 2, i])
-        theta = fma(q, theta, fma(late, memory[_VALUES + 4, i], memory[_VALUES + 1, i]))
-        shift = minimum(maximum(root * q * theta, -bound), bound)
+        theta = fma(q, theta, memory[_VALUES + 1, i])
+        memory[_SHIFT, i] = minimum(maximum(root * q * theta, -bound), bound)
+
+
+@inlined
+def _shift(data, other, memory, normal, lanes):
+    """Shift normal numbers and add to the logarithm of the likelihood ratio.
+
+    Neither a path that has reached a level is led any more nor one whose companion in `other` has:
+    what it does alone then happens with the weight that both had on arrival.
+    """
+    zero, half = like(data[0, 0], 0.0), like(data[0, 0], 0.5)
+    for i in range(lanes):
+        on_way = where(other[REACHED, i] == zero, memory[_SHIFT, i], zero)
+        shift = where(data[REACHED, i] == zero, on_way, zero)
         drawn = data[normal, i]
         data[LOG_WEIGHT, i] -= shift * fma(half, shift, drawn)
         data[normal, i] = drawn + shift
 
 
 @inlined
-def _evaluate(tilt, data, memory, lanes):
-    """Evaluate the polynomials in the state."""
-    one = like(data[0, 0], 1.0)
+def _evaluate(tilt, data, memory, late, lanes):
+    """Evaluate the polynomials in the state, four terms at a time: fewer loads and stores."""
+    one, zero = like(data[0, 0], 1.0), like(data[0, 0], 0.0)
     for row in range(len(STATE)):
         width = tilt.width[row]
         for i in range(lanes):
@@ -253,13 +274,40 @@ def _evaluate(tilt, data, memory, lanes):
         row, parent, term = tilt.variable[t], _MONOMIALS + tilt.parent[t], _MONOMIALS + t
         for i in range(lanes):
             memory[term, i] = memory[parent, i] * memory[row, i]
-    for output in range(_VALUES, _MONOMIALS):
+    for output in range(_VALUES, _SHIFT):
         for i in range(lanes):
-            memory[output, i] = like(one, 0.0)
-    for k in range(len(tilt.coefficient)):
-        c, term, output = tilt.coefficient[k], _MONOMIALS + tilt.term[k], _VALUES + tilt.output[k]
+            memory[output, i] = zero
+    for k in range(len(tilt.output)):
+        output, (t, u, v, w) = _VALUES + tilt.output[k], _terms(tilt, k)
+        a, b, c, d = _coefficients(tilt, k, late)
         for i in range(lanes):
-            memory[output, i] = fma(c, memory[term, i], memory[output, i])
+            pair = fma(a, memory[t, i], b * memory[u, i])
+            value = fma(c, memory[v, i], fma(d, memory[w, i], memory[output, i]))
+            memory[output, i] = value + pair
+
+
+@inlined
+def _terms(tilt, k):
+    """Rows of four monomials."""
+    term = tilt.term[k]
+    return (
+        _MONOMIALS + term[0],
+        _MONOMIALS + term[1],
+        _MONOMIALS + term[2],
+        _MONOMIALS + term[3],
+    )
+
+
+@inlined
+def _coefficients(tilt, k, late):
+    """Coefficients of four monomials now."""
+    always, last = tilt.coefficient[k], tilt.last[k]
+    return (
+        fma(late, last[0], always[0]),
+        fma(late, last[1], always[1]),
+        fma(late, last[2], always[2]),
+        fma(late, last[3], always[3]),
+    )
 
 
 @kernel

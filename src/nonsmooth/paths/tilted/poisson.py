@@ -15,6 +15,7 @@ from nonsmooth.paths import tuning
 from nonsmooth.paths.ensembles import require_finite
 from nonsmooth.paths.kernels.panel import TOTAL_DELTA, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK, labelled
+from nonsmooth.paths.resolution import coarse_step
 from nonsmooth.paths.schemes import registry
 from nonsmooth.paths.tilted.polynomials import polynomials, state_rows
 from nonsmooth.paths.tilted.tilt import Guide
@@ -98,4 +99,6 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
     np.add.at(coefficients[1], lower, own * times * factor / np.sqrt(step))
     mean = 0.0 if scene.is_odd() else weights[-1] / (count * step)
     ahead = 0.0 if scene.is_odd() and not scene.start else first - mean * count * step
-    return Guide(basis, coefficients, float(mean), float(np.sqrt(gamma2)), ahead)
+    white = scene.noise.kind == "white"
+    kept = (tuning.TILT.kept_white if white else tuning.TILT.kept) * coarse_step(scene)
+    return Guide(basis, coefficients, float(mean), float(np.sqrt(gamma2)), kept, ahead)

@@ -29,11 +29,12 @@ class Tilt(NamedTuple):
     """What kernels know of a guide towards one level.
 
     `parent` and `variable` make each monomial from another one; `width` are the inverse reaches of
-    the state variables; `coefficient` belongs to the monomial `term` of the polynomial `output`
-    (0 for u, 1 to 4 for P). `side` is 1 for the upper level and -1 for the lower, `target` the
+    the state variables. A row of `term` has four monomials, that of `coefficient` what they are
+    multiplied by in the polynomial `output` (0 for u, 1 to 3 for P), and that of `last` what this
+    gains times exp(-lambda s). `side` is 1 for the upper level and -1 for the lower, `target` the
     level times `side` plus kappa, `mean` that of g, `gamma` the root of gamma^2, `due` the time
     by which the level is to be reached, `end` that with a while added, `haste` is lambda, `cap`
-    is c, and `bound` the largest theta.
+    is c, `bound` the largest theta, and `kept` the time for which theta is kept.
     """
 
     parent: np.ndarray
@@ -42,6 +43,7 @@ class Tilt(NamedTuple):
     output: np.ndarray
     term: np.ndarray
     coefficient: np.ndarray
+    last: np.ndarray
     side: Any
     target: float
     mean: float
@@ -51,6 +53,7 @@ class Tilt(NamedTuple):
     haste: float
     cap: Any
     bound: float
+    kept: float
 
 
 @dataclass(frozen=True)
@@ -93,6 +96,8 @@ class Guide:
         Of u and of P_1 to P_4.
     mean, gamma : float
         The stationary mean of g and the root of gamma^2.
+    kept : float
+        Time for which a shift is kept.
     ahead : float
         By how much the start takes int g farther than the mean does, in the long run.
     kappa : float
@@ -103,6 +108,7 @@ class Guide:
     coefficients: np.ndarray
     mean: float
     gamma: float
+    kept: float
     ahead: float = 0.0
     kappa: float = 0.0
 
@@ -113,14 +119,19 @@ class Guide:
         rows = np.array(self.basis.rows) - STATE[0]
         width = np.ones(len(STATE), number)
         width[rows] = 1 / self.basis.reach
-        output, term = np.nonzero(self.coefficients)
+        output, term = self._by_fours()
+        always, last = self.coefficients[:4], np.zeros_like(self.coefficients[:4])
+        last[1] = self.coefficients[4]
+        filled, used = np.maximum(term, 0), term >= 0
+        always, last = (used * part[output[:, None], filled] for part in (always, last))
         return Tilt(
             parent,
             rows[factor],
             width,
             output,
-            term,
-            self.coefficients[output, term].astype(number),
+            filled,
+            always.astype(number),
+            last.astype(number),
             number(aim.side),
             float(aim.distance + self.kappa),
             float(self.mean),
@@ -130,7 +141,19 @@ class Guide:
             float(tuning.TILT.haste),
             number(self.largest_rate(aim)),
             float(tuning.TILT.bound * self.gamma * self.largest_rate(aim)),
+            float(self.kept),
         )
+
+    def _by_fours(self):
+        """Terms of u and P_1 to P_3, four of one polynomial at a time, filled up with -1."""
+        used = self.coefficients[:4] != 0
+        used[1] |= self.coefficients[4] != 0
+        output, rows = [], []
+        for polynomial, terms in enumerate(map(np.flatnonzero, used)):
+            filled = np.pad(terms, (0, -len(terms) % 4), constant_values=-1).reshape(-1, 4)
+            output += len(filled) * [polynomial]
+            rows.append(filled)
+        return np.array(output, dtype=np.int64), np.concatenate(rows)
 
     def rate(self, aim: Aim, left: float, covered: np.ndarray) -> np.ndarray:
         """Return q with its sign at the time `left` before the end; `covered` is D + u."""
