@@ -9,6 +9,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from nonsmooth.paths.kernels.vector_math import ELEMENTARY
 from nonsmooth.scenes.formulas import compilable
 
 
@@ -35,8 +36,9 @@ def compiled(
         void(out, state, width, lanes): writes out[i] for each of the `lanes` columns of the
         state, whose rows are `width` long.
     """
+    modules = [ELEMENTARY, "math"] if precision == "float32" else "math"
     value = numba.njit(
-        sympy.lambdify(variables, compilable(expression), modules="math", cse=True),
+        sympy.lambdify(variables, compilable(expression), modules=modules, cse=True),
         error_model="numpy",
         forceinline=True,
     )
