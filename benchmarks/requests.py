@@ -448,7 +448,7 @@ def gap_on_degree(request, degree):
 
 def growth_on(request, grid):
     """Solve for gamma^2."""
-    return gamma2_on_grids.gamma2_on(request.scene, grid, 0.02 * request.tol)
+    return gamma2_on_grids.gamma2_on(request.scene, grid)(0.02 * request.tol)
 
 
 def moments_on(request, grid):

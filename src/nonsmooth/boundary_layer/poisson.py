@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from sympy import Symbol
@@ -81,7 +82,9 @@ def mean_at(
         spreads.append(float(np.std(rest)))
         return float(np.mean(rest))
 
-    found = combined(scene, tol, mean, lambda _, tol: tol * unit)
+    found = combined(
+        scene, tol, lambda scene, grid: partial(mean, scene, grid), lambda _, tol: tol * unit
+    )
     left_out = 1 - len(known) / count
     return found.value, found.error + 2 * max(spreads) * math.sqrt(left_out / len(known))
 

@@ -173,7 +173,18 @@ class AlternatingSolver:
         values = noise(transport(values)) if adjoint else transport(noise(values))
         return 2 * self._shift * values.ravel()
 
-    def _gmres(self, right, parity, accuracy, adjoint=False):
+    def _unconditioned(self, values, parity):
+        """Apply the inverse of `_precondition`."""
+        moved = np.stack(
+            [
+                self._shift * part - t @ part
+                for t, part in zip(self._transport, values.reshape(self._shape), strict=True)
+            ]
+        )
+        changed = self._by_noise(moved, parity, lambda sign, columns: self._noise[sign] @ columns)
+        return (self._shift * moved - changed).ravel() / (2 * self._shift)
+
+    def _gmres(self, right, parity, accuracy, near=None, adjoint=False):
         """Solve (-A + 1 measure') u = f; 1 is a column of ones and measure' a row.
 
         The integral of u over the measure is then the mean of f.
@@ -202,6 +213,7 @@ class AlternatingSolver:
         solution, failed = spla.gmres(
             spla.LinearOperator((right.size, right.size), apply, dtype=float),
             scale * right,
+            None if near is None else scale * self._unconditioned(near, parity),
             rtol=accuracy,
             restart=tuning.ALTERNATING_DIRECTIONS.krylov,
             maxiter=tuning.ALTERNATING_DIRECTIONS.restarts,
@@ -218,12 +230,14 @@ class AlternatingSolver:
             "in scenes that mix slowly; loosen tol or use Monte Carlo"
         )
 
-    def solve(self, values: np.ndarray, parity: int, accuracy: float) -> tuple[np.ndarray, float]:
+    def solve(
+        self, values: np.ndarray, parity: int, accuracy: float, near: np.ndarray | None = None
+    ) -> tuple[np.ndarray, float]:
         """Solve -A u = f - E f.
 
         Parameters
         ----------
-        values, parity
+        values, parity, near
             As for `solver.PoissonSolver.solve`.
         accuracy : float
             Norm of the residual, weighted with a normal density, relative to that of f.
@@ -238,7 +252,7 @@ class AlternatingSolver:
         ToleranceError
             If the iteration does not converge.
         """
-        solution = self._gmres(values, parity, accuracy)
+        solution = self._gmres(values, parity, accuracy, near)
         if self.mirrored and parity == ODD:
             return solution, 0.0
         return solution, float(self._measure @ solution)

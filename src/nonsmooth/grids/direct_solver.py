@@ -206,7 +206,11 @@ class DirectSolver:
         return self._factors[parity]
 
     def solve(
-        self, values: np.ndarray, parity: int, accuracy: float | None = None
+        self,
+        values: np.ndarray,
+        parity: int,
+        accuracy: float | None = None,
+        near: np.ndarray | None = None,
     ) -> tuple[np.ndarray, float]:
         """Solve -A u = f - E f; the accuracy is that of rounding."""
         if self.mirrored and parity == ODD:

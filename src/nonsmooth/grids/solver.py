@@ -64,7 +64,7 @@ class PoissonSolver(Protocol):
         """
 
     def solve(
-        self, values: np.ndarray, parity: int, accuracy: float, /
+        self, values: np.ndarray, parity: int, accuracy: float, near: np.ndarray | None = None, /
     ) -> tuple[np.ndarray, float]:
         """Solve -A u = f - E f.
 
@@ -77,6 +77,8 @@ class PoissonSolver(Protocol):
         accuracy : float
             Residual that is allowed, relative to f, in a norm of the solver's choice that bounds
             errors of means. A direct solver needs none.
+        near : numpy.ndarray, shape (k,), optional
+            A solution of nearly the same equation, from which an iterative solver goes on.
 
         Returns
         -------

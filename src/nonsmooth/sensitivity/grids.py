@@ -57,10 +57,14 @@ def slope(scene: Scene, parameter: str, tol: float) -> tuple[float, float, float
         if found.met:
             return float(found.value[0]), float(np.max(found.error)), float(found.value[1])
     gamma2 = _roughly(scene)
+
+    def on(scene, grid):
+        return lambda accuracy: float(with_gamma2(scene, parameter, grid, accuracy)[0])
+
     rest = combined(
         scene,
         tol,
-        lambda scene, grid, accuracy: float(with_gamma2(scene, parameter, grid, accuracy)[0]),
+        on,
         lambda value, tol: tol * gamma2,
     )
     return rest.value, rest.error, gamma2

@@ -50,7 +50,7 @@ class Combined:
 def combined(
     scene: Scene,
     tol: float,
-    functional: Callable[[Scene, Grid, float], float],
+    functional: Callable[[Scene, Grid], Callable[[float], float]],
     allowed: Callable[[float, float], float],
     floor: Callable[[Scene, Grid, float], float] = lambda scene, grid, accuracy: 0.0,
     first: Mapping[int, int] = tuning.GAMMA2_ON_GRIDS.coarse,
@@ -64,11 +64,12 @@ def combined(
         convergence.
     tol : float
     functional : callable
-        Takes a scene with a finite n, a grid and the residual of the solver; returns a value.
+        Takes a scene with a finite n and a grid; returns what takes the residual of the solver and
+        returns a value. It may go on from what it has found with a larger residual.
     allowed : callable
         Takes a value and a tolerance; returns the error that it may have.
     floor : callable, optional
-        Takes the arguments of `functional`; returns the error that cancelling terms leave. A value
+        Takes a scene, a grid and a residual; returns the error that cancelling terms leave. A value
         below its error is not refined further once that is below the floor.
     first : mapping, optional
         Level of the first grid, by the number of variables.
@@ -113,7 +114,7 @@ def _extrapolated(stiff, tol, functional, allowed, floor, first):
     found = _combined(stiff, tol / 2, functional, allowed, floor, first)
     fitted_below = replace(found.grid, ends=narrowed(softer, found.grid.ends, found.grid.ends))
     try:
-        gap = found.there - functional(softer, fitted_below, found.accuracy)
+        gap = found.there - functional(softer, fitted_below)(found.accuracy)
     except ToleranceError:  # how far the limit is from the value for the large n remains unknown
         return replace(found, error=math.inf)
     rest = gap / ((10 if elastic else 100) - 1)
@@ -135,7 +136,7 @@ def _combined(scene, tol, functional, allowed, floor, first):
         return replace(coarse, levels=levels)
 
     largest = grid_tuning.TENSOR_GRIDS.largest[count]
-    box = _box_effect(coarse, base, lambda grid: on(grid, accuracy))
+    box = _box_effect(coarse, base, lambda grid: on(grid)(accuracy))
     finest = _finest(scene, coarse, chosen.boxed * largest)
 
     def error(combination):
@@ -152,7 +153,7 @@ def _combined(scene, tol, functional, allowed, floor, first):
     combination = Combination(
         tuple(coarse.levels[part[0]] for part in directions),
         base,
-        lambda index: on(grid(index), accuracy),
+        lambda index: on(grid(index))(accuracy),
         lambda index: points(scene, grid(index)),
     )
 
@@ -249,9 +250,9 @@ def _on_coarsest(grid, tol, on, allowed):
     hundredth of a residual is looked at, besides a tenth.
     """
     chosen = tuning.GAMMA2_ON_GRIDS
-    accuracy = tol * chosen.residual
+    accuracy, there = tol * chosen.residual, on(grid)
     if len(grid.levels) <= 2:
-        return on(grid, accuracy), accuracy, accuracy
+        return there(accuracy), accuracy, accuracy
 
     def change(found):
         if len(found) < 3:
@@ -261,7 +262,7 @@ def _on_coarsest(grid, tol, on, allowed):
 
     refined = until_agreement(
         _tenths(accuracy),
-        lambda accuracy: (on(grid, accuracy), accuracy),
+        lambda accuracy: (there(accuracy), accuracy),
         change,
         met=lambda _, change: change <= chosen.iteration * tol,
     )

@@ -6,6 +6,7 @@ resolved.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def gamma2(scene: Scene, tol: float) -> tuple[float, float]:
     return gamma2_by_combination(scene, tol)
 
 
-def gamma2_on(scene: Scene, grid: Grid, accuracy: float) -> float:
+def gamma2_on(scene: Scene, grid: Grid) -> Callable[[float], float]:
     """Compute gamma^2 on one grid.
 
     Parameters
@@ -53,18 +54,24 @@ def gamma2_on(scene: Scene, grid: Grid, accuracy: float) -> float:
     scene : Scene
         With a finite n.
     grid : Grid
-    accuracy : float
-        Residual of the Poisson solver.
 
     Returns
     -------
-    float
+    callable
+        Takes the residual of the Poisson solver; returns gamma^2. Each call goes on from the
+        solutions of the one before.
     """
     axes, solve = solver(scene, grid)
     g = solve.fold(evaluate(scene.numerical_observable(), axes))
-    u, mean = solve.solve(g, ODD, accuracy)
-    _, half = solve.solve((g - mean) * u, EVEN, accuracy)
-    return 2 * half
+    u = h = None
+
+    def value(accuracy):
+        nonlocal u, h
+        u, mean = solve.solve(g, ODD, accuracy, u)
+        h, half = solve.solve((g - mean) * u, EVEN, accuracy, h)
+        return 2 * half
+
+    return value
 
 
 def correlation_time(scene: Scene, grid: Grid, value: float, accuracy: float) -> float:
@@ -94,7 +101,7 @@ def gamma2_by_uniform_refinement(scene: Scene, tol: float) -> Refined:
     rounding = tuning.GAMMA2_ON_GRIDS.rounding
 
     def solve(grid):
-        value = gamma2_on(scene, grid, tol)
+        value = gamma2_on(scene, grid)(tol)
         return value, rounding / 2 * tol * abs(value)
 
     return uniform_refinement.refined(

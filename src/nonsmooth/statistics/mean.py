@@ -167,7 +167,7 @@ def mean_on_grids(scene: Scene, tol: float | None = None) -> tuple[float, float]
     best = combined(
         scene,
         relative,
-        lambda scene, grid, accuracy: mean_on(scene, grid, accuracy)[0],
+        lambda scene, grid: lambda accuracy: mean_on(scene, grid, accuracy)[0],
         lambda value, tol: tol * size,
     )
     if not best.error <= relative * size:

@@ -6,6 +6,7 @@ Theorem 5 of the paper says that there is such a rate.
 import math
 import time
 from collections.abc import Callable, Iterable
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -93,7 +94,7 @@ def _combined(scene, tol):
     found = combined(
         scene,
         tol,
-        on_grid,
+        lambda scene, grid: partial(on_grid, scene, grid),
         lambda value, tol: tol * value,
         first=tuning.SPECTRAL_GAP.first,
     )

@@ -69,6 +69,21 @@ def test_solutions_solve_the_equation(made):
         assert np.sqrt(masses @ residual**2) < 1e-6 * np.sqrt(masses @ whole**2)
 
 
+def test_solvers_go_on_from_a_solution(made):
+    """From one that is near, an iteration is shorter and ends at the same one."""
+    solver, axes, _ = made
+    for f, parity in ((y, ODD), (y**2, EVEN)):
+        values = solver.fold(evaluate(f, axes))
+        near, _ = solver.solve(values, parity, 1e-4)
+        wanted, mean = solver.solve(values, parity, ACCURACY)
+        steps = getattr(solver, "iterations", 0)
+        found, same = solver.solve(values, parity, ACCURACY, near)
+        # 5 of 9 digits are left
+        assert getattr(solver, "iterations", 0) <= 0.8 * steps
+        assert np.allclose(solver.scale * found, solver.scale * wanted, atol=1e-6)
+        assert same == pytest.approx(mean, abs=1e-6)
+
+
 def test_means_are_those_of_the_invariant_measure(made):
     """M' A = 0, m of sum 1, and E f = m' f; the mean of an odd function is 0."""
     solver, axes, A = made
