@@ -16,6 +16,7 @@ from numba.extending import intrinsic, overload
 
 from nonsmooth.paths import tuning
 from nonsmooth.paths.kernels.compilation import announced, inlined, kernel, merged
+from nonsmooth.paths.kernels.instructions import fma, larger, like, smaller
 from nonsmooth.paths.kernels.panel import (
     BASE,
     BEFORE,
@@ -35,7 +36,6 @@ from nonsmooth.paths.kernels.panel import (
     retire,
 )
 from nonsmooth.paths.kernels.random_numbers import normals
-from nonsmooth.paths.kernels.vector_math import fma, larger, like, smaller
 from nonsmooth.paths.parallel import count
 from nonsmooth.paths.schemes import registry
 

@@ -9,7 +9,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from nonsmooth.paths.kernels.vector_math import ELEMENTARY
+from nonsmooth.paths.kernels.single_precision import ELEMENTARY
 from nonsmooth.scenes.formulas import compilable
 
 

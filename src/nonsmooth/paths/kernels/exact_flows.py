@@ -10,18 +10,8 @@ import math
 import numpy as np
 
 from nonsmooth.paths.kernels.compilation import inlined
-from nonsmooth.paths.kernels.vector_math import (
-    arctan2,
-    decay,
-    expm1,
-    fma,
-    like,
-    log1p,
-    maximum,
-    minimum,
-    sincos,
-    where,
-)
+from nonsmooth.paths.kernels.instructions import fma, like, maximum, minimum, where
+from nonsmooth.paths.kernels.vector_math import arctan2, decay, expm1, log1p, sincos
 
 
 @inlined

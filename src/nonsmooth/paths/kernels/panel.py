@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from nonsmooth.paths.kernels.compilation import inlined, kernel
+from nonsmooth.paths.kernels.instructions import larger, smaller
 from nonsmooth.paths.kernels.random_numbers import BLOCK, generator_words
-from nonsmooth.paths.kernels.vector_math import larger, smaller
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 

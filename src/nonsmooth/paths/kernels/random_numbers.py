@@ -16,7 +16,7 @@ import numpy as np
 
 from nonsmooth.paths.kernels import vector_math
 from nonsmooth.paths.kernels.compilation import inlined
-from nonsmooth.paths.kernels.vector_math import fma, like
+from nonsmooth.paths.kernels.instructions import fma, like
 from nonsmooth.scenes.scene import Scene
 
 BLOCK = 1000  # paths per stream; changing it changes every Monte Carlo result

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.instructions import fma, like, minimum
 from nonsmooth.paths.kernels.panel import GAIN, Y, observe
-from nonsmooth.paths.kernels.vector_math import fma, like, minimum
 from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.scene import Scene

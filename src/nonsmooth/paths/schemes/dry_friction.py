@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.instructions import fma, like, minimum, where
 from nonsmooth.paths.kernels.panel import GAIN, Y, observe
-from nonsmooth.paths.kernels.vector_math import fma, like, minimum, where
 from nonsmooth.paths.schemes import drift_implicit
 from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes.scene import Scene

@@ -9,8 +9,8 @@ import sympy
 
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
+from nonsmooth.paths.kernels.instructions import fma, like
 from nonsmooth.paths.kernels.panel import GAIN, WIDTH, WORK, ZETA, observe
-from nonsmooth.paths.kernels.vector_math import fma, like
 from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.scene import Scene

@@ -13,8 +13,8 @@ import numpy as np
 
 from nonsmooth.paths.kernels import exact_flows
 from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.instructions import fma, like
 from nonsmooth.paths.kernels.panel import GAIN, Y, observe
-from nonsmooth.paths.kernels.vector_math import fma, like
 from nonsmooth.paths.schemes import drift_implicit, strang
 from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes.scene import Scene

@@ -35,6 +35,7 @@ from nonsmooth.paths.control_variate import DEGREE
 from nonsmooth.paths.kernels import exact_flows
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
+from nonsmooth.paths.kernels.instructions import fma, larger, like, maximum, minimum
 from nonsmooth.paths.kernels.panel import (
     BASE,
     DELTA,
@@ -50,7 +51,6 @@ from nonsmooth.paths.kernels.panel import (
     Y,
     observe,
 )
-from nonsmooth.paths.kernels.vector_math import fma, larger, like, maximum, minimum
 from nonsmooth.paths.schemes.scheme import Scheme
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised

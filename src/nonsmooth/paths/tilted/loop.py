@@ -14,6 +14,7 @@ import numba
 import numpy as np
 
 from nonsmooth.paths.kernels.compilation import announced, inlined, kernel
+from nonsmooth.paths.kernels.instructions import fma, like, maximum, minimum, where
 from nonsmooth.paths.kernels.panel import (
     BASE,
     BEFORE,
@@ -28,7 +29,6 @@ from nonsmooth.paths.kernels.panel import (
     observe,
 )
 from nonsmooth.paths.kernels.random_numbers import normals
-from nonsmooth.paths.kernels.vector_math import fma, like, maximum, minimum, where
 from nonsmooth.paths.parallel import count
 from nonsmooth.paths.tilted.tilt import Tilt
 from nonsmooth.paths.time_loop import (

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from nonsmooth.paths.kernels.compiled_formulas import compiled
-from nonsmooth.paths.kernels.vector_math import ELEMENTARY
+from nonsmooth.paths.kernels.single_precision import ELEMENTARY
 from nonsmooth.scenes.formulas import FUNCTIONS
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x
 

@@ -1,0 +1,140 @@
+"""Elementary functions in double precision: power series of numbers that are small enough."""
+
+import math
+
+import numpy as np
+
+from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.instructions import (
+    bits,
+    fma,
+    from_bits,
+    maximum,
+    minimum,
+    polynomial,
+    where,
+)
+
+_U = np.uint64
+_LOG2E, _LN2, _LN2_LOW = 1.4426950408889634, 0.6931471805599453, 2.3190468138462996e-17
+_HALF_PI, _HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17
+_SQRT_HALF = _U(0x3FE6A09E667F3BCD)  # the bits of sqrt(1/2)
+_ROUNDING = 6755399441055744.0  # 1.5 * 2^52: adding it leaves an integer in the lowest bits
+_MANTISSA, _BIAS = _U(0x000FFFFFFFFFFFFF), _U(1023)
+
+# Series, highest power first, each up to what is below 1e-17 in the range that its argument has:
+# (e^f - 1 - f) / f^2 for |f| <= log(2)/2, sin and cos up to pi/4, atan up to tan(pi/8), and
+# atanh(s) for log(1 + f), s = f / (2 + f), up to 0.172.
+_EXP = tuple(1 / math.factorial(j + 2) for j in reversed(range(13)))
+_SIN = tuple((-1) ** (j + 1) / math.factorial(2 * j + 3) for j in reversed(range(8)))
+_COS = tuple((-1) ** (j + 1) / math.factorial(2 * j + 2) for j in reversed(range(9)))
+_ATAN = tuple((-1) ** (j + 1) / (2 * j + 3) for j in reversed(range(21)))
+_ATANH = tuple(2 / (2 * j + 3) for j in reversed(range(11)))
+
+
+@inlined
+def _integer(x):
+    """Round to an integer, returned as it is and in the lowest bits of a word."""
+    shifted = x + _ROUNDING
+    return shifted - _ROUNDING, bits(shifted)
+
+
+@inlined
+def _power_of_two(word):
+    """2^k for the integer k in the lowest bits of a word."""
+    return from_bits(_U(_U(word + _BIAS) << _U(52)))
+
+
+@inlined
+def _exp_parts(x):
+    """Split e^x into 2^k and e^f; return 2^k and e^f - 1."""
+    k, word = _integer(x * _LOG2E)
+    f = fma(k, -_LN2_LOW, fma(k, -_LN2, x))
+    return _power_of_two(word), fma(f * f, polynomial(_EXP, f), f)
+
+
+@inlined
+def expm1(x):
+    """e^x - 1 for x <= 0; to two ulps."""
+    power, rest = _exp_parts(maximum(x, -700.0))
+    return fma(power, rest, power - 1.0)
+
+
+@inlined
+def decay(x):
+    """e^-x for x >= 0; to an ulp of 1."""
+    power, rest = _exp_parts(-minimum(x, 700.0))
+    return fma(power, rest, power)
+
+
+@inlined
+def _split(x):
+    """Split x > 0 into 2^k (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)); return k and f."""
+    shifted = _U(bits(x) - _SQRT_HALF)
+    mantissa = from_bits(_U(_U(shifted & _MANTISSA) + _SQRT_HALF))
+    # the exponent is below 0 if the first bit is set: 2^11 is added, and taken away from the number
+    exponent = _U(_U(_U(shifted >> _U(52)) + _U(2048)) & _U(4095))
+    return from_bits(_U(exponent + bits(_ROUNDING))) - _ROUNDING - 2048.0, mantissa - 1.0
+
+
+@inlined
+def _log_of(k, f, lost):
+    """K log 2 + log(1 + f) + lost."""
+    s = f / (2.0 + f)
+    square, half = s * s, 0.5 * f * f
+    rest = square * polynomial(_ATANH, square)
+    small = fma(k, _LN2_LOW, lost) - (half - s * (half + rest))
+    return fma(k, _LN2, f + small)
+
+
+@inlined
+def log(x):
+    """Log x for x > 0."""
+    k, f = _split(x)
+    return _log_of(k, f, 0.0)
+
+
+@inlined
+def log1p(x):
+    """log(1 + x) for x >= 0."""
+    u = 1.0 + x
+    k, f = _split(u)
+    # the rounding error of u = 1 + x, divided by u; where u > 2 it does not matter
+    return _log_of(k, f, where(u < 2.0, (x - (u - 1.0)) / u, 0.0))
+
+
+@inlined
+def sincos_in_quadrant(quadrant, angle):
+    """Sine and cosine of quadrant * pi/2 + angle, for |angle| <= pi/4."""
+    square, quadrant = angle * angle, _U(quadrant)
+    sine = fma(polynomial(_SIN, square) * square, angle, angle)
+    cosine = fma(polynomial(_COS, square), square, 1.0)
+    odd = _U(quadrant & _U(1)) != _U(0)
+    first = where(odd, cosine, sine)
+    second = where(odd, sine, cosine)
+    return (
+        from_bits(_U(bits(first) ^ _U(_U(quadrant & _U(2)) << _U(62)))),
+        from_bits(_U(bits(second) ^ _U(_U(_U(quadrant + _U(1)) & _U(2)) << _U(62)))),
+    )
+
+
+@inlined
+def sincos(x):
+    """Sine and cosine."""
+    k, word = _integer(x * (1 / _HALF_PI))
+    return sincos_in_quadrant(word, fma(k, -_HALF_PI_LOW, fma(k, -_HALF_PI, x)))
+
+
+@inlined
+def arctan2(y, x):
+    """Angle of (x, y) for y >= 0, in [0, pi]."""
+    along = abs(x)
+    low, high = minimum(along, y), maximum(maximum(along, y), 1e-300)
+    steep = low > 0.414213562373095 * high
+    # tan(angle - pi/4) is used where the angle is steep
+    z = where(steep, low - high, low) / where(steep, low + high, high)
+    square = z * z
+    angle = fma(polynomial(_ATAN, square) * square, z, z)
+    angle = where(steep, angle + math.pi / 4, angle)
+    angle = where(y > along, math.pi / 2 - angle, angle)
+    return where(x < 0.0, math.pi - angle, angle)

@@ -1,0 +1,226 @@
+"""Elementary functions in single precision: the polynomials of S. L. Moshier's Cephes library."""
+
+import numpy as np
+
+from nonsmooth.paths.kernels.compilation import inlined
+from nonsmooth.paths.kernels.instructions import (
+    bits,
+    fma,
+    from_bits,
+    maximum,
+    minimum,
+    polynomial,
+    where,
+)
+
+_U, _I, _F = np.uint32, np.int32, np.float32
+_EXP = tuple(
+    map(
+        _F,
+        (
+            1.9875691500e-4,
+            1.3981999507e-3,
+            8.3334519073e-3,
+            4.1665795894e-2,
+            1.6666665459e-1,
+            5.0000001201e-1,
+        ),
+    )
+)
+_LOG = tuple(
+    map(
+        _F,
+        (
+            7.0376836292e-2,
+            -1.1514610310e-1,
+            1.1676998740e-1,
+            -1.2420140846e-1,
+            1.4249322787e-1,
+            -1.6668057665e-1,
+            2.0000714765e-1,
+            -2.4999993993e-1,
+            3.3333331174e-1,
+            -0.5,
+        ),
+    )
+)
+_SIN = tuple(map(_F, (-1.9515295891e-4, 8.3321608736e-3, -1.6666654611e-1)))
+_COS = tuple(map(_F, (2.443315711809948e-5, -1.388731625493765e-3, 4.166664568298827e-2, -0.5)))
+_ATAN = tuple(map(_F, (8.05374449538e-2, -1.38776856032e-1, 1.99777106478e-1, -3.33329491539e-1)))
+_SQRT_HALF = _U(0x3F3504F3)  # the bits of sqrt(1/2)
+
+
+@inlined
+def _power_of_two(k):
+    """2^k for a small integer held as a float, through its bits."""
+    return from_bits(_U(_U(_I(k) + _I(127)) << _U(23)))
+
+
+@inlined
+def expm1(x):
+    """e^x - 1 for x <= 0; to two ulps."""
+    x = maximum(x, _F(-87.0))
+    k = np.rint(x * _F(1.44269504))
+    f = fma(k, _F(2.12194440e-4), fma(k, _F(-0.693359375), x))
+    power = _power_of_two(k)
+    return fma(power, fma(f * f, polynomial(_EXP, f), f), power - _F(1.0))
+
+
+@inlined
+def decay(x):
+    """e^-x for x >= 0, as a power of two times an exponential; to an ulp of 1."""
+    x = maximum(x * _F(-1.44269504), _F(-126.0))
+    # adding 1.5 * 2^23 rounds to an integer and leaves it in the lowest bits
+    shifted = x + _F(12582912.0)
+    f = (x - (shifted - _F(12582912.0))) * _F(0.693147181)
+    power = fma(fma(f, polynomial(_EXP, f), _F(1.0)), f, _F(1.0))
+    return from_bits(_U(bits(power) + _U(bits(shifted) << _U(23))))
+
+
+@inlined
+def _split(x):
+    """Split x > 0 into 2^k (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)); return k and f."""
+    shifted = _U(bits(x) - _SQRT_HALF)
+    mantissa = from_bits(_U(_U(shifted & _U(0x007FFFFF)) + _SQRT_HALF))
+    return _F(_I(_I(shifted) >> _I(23))), mantissa - _F(1.0)
+
+
+@inlined
+def log(x):
+    """Log x for x > 0."""
+    k, f = _split(x)
+    return fma(k, _F(0.693147181), fma(f * f, polynomial(_LOG, f), f))
+
+
+@inlined
+def log1p(x):
+    """log(1 + x) for x >= 0."""
+    u = _F(1.0) + x
+    k, f = _split(u)
+    # the rounding error of u = 1 + x, divided by u; where u > 2 it does not matter
+    lost = where(u < _F(2.0), (x - (u - _F(1.0))) * (_F(1.5) - _F(0.5) * u), _F(0.0))
+    return fma(k, _F(0.693147181), fma(f * f, polynomial(_LOG, f), f + lost))
+
+
+@inlined
+def sincos_in_quadrant(quadrant, angle):
+    """Sine and cosine of quadrant * pi/2 + angle, for |angle| <= pi/4."""
+    square = angle * angle
+    sine = fma(polynomial(_SIN, square) * square, angle, angle)
+    cosine = fma(polynomial(_COS, square), square, _F(1.0))
+    odd = _U(quadrant & _U(1)) != _U(0)
+    first = where(odd, cosine, sine)
+    second = where(odd, sine, cosine)
+    return (
+        from_bits(_U(bits(first) ^ _U(_U(quadrant & _U(2)) << _U(30)))),
+        from_bits(_U(bits(second) ^ _U(_U(_U(quadrant + _U(1)) & _U(2)) << _U(30)))),
+    )
+
+
+@inlined
+def _reduced(x):
+    """Return k, as an integer, and x - k pi/2."""
+    k = np.rint(x * _F(0.636619772))
+    angle = fma(k, _F(-7.54978995e-8), fma(k, _F(-4.83751297e-4), fma(k, _F(-1.5703125), x)))
+    return _U(_I(k)), angle
+
+
+@inlined
+def sincos(x):
+    """Sine and cosine."""
+    quadrant, angle = _reduced(x)
+    return sincos_in_quadrant(quadrant, angle)
+
+
+@inlined
+def arctan2(y, x):
+    """Angle of (x, y) for y >= 0, in [0, pi]."""
+    along = abs(x)
+    low, high = minimum(along, y), maximum(maximum(along, y), _F(1e-37))
+    steep = low > _F(0.414213562) * high
+    # tan(angle - pi/4) is used where the angle is steep
+    z = where(steep, low - high, low) / where(steep, low + high, high)
+    square = z * z
+    angle = fma(polynomial(_ATAN, square) * square, z, z)
+    angle = where(steep, angle + _F(0.785398163), angle)
+    angle = where(y > along, _F(1.57079633) - angle, angle)
+    return where(x < _F(0.0), _F(3.14159265) - angle, angle)
+
+
+@inlined
+def _exp(x):
+    x = minimum(maximum(_F(x), _F(-87.0)), _F(89.0))  # 2^128, from 88.4 on, is infinite
+    k = np.rint(x * _F(1.44269504))
+    f = fma(k, _F(2.12194440e-4), fma(k, _F(-0.693359375), x))
+    power = _power_of_two(k)
+    return fma(power, fma(f * f, polynomial(_EXP, f), f), power)
+
+
+@inlined
+def _with_sign(size, x):
+    """Give a number >= 0 the sign of x."""
+    return from_bits(_U(bits(size) | _U(bits(x) & _U(0x80000000))))
+
+
+@inlined
+def _tanh(x):
+    x = _F(x)
+    less = expm1(_F(-2.0) * abs(x))
+    return _with_sign(-less / (less + _F(2.0)), x)
+
+
+@inlined
+def _cosh(x):
+    power = _exp(abs(_F(x)))
+    return _F(0.5) * (power + _F(1.0) / power)
+
+
+@inlined
+def _sinh(x):
+    x = _F(x)
+    size, power = abs(x), _exp(abs(x))
+    less = expm1(-minimum(size, _F(1.0)))
+    small = _F(-0.5) * less * (less + _F(2.0)) / (less + _F(1.0))
+    return _with_sign(where(size < _F(1.0), small, _F(0.5) * (power - _F(1.0) / power)), x)
+
+
+@inlined
+def _sincos_of_any(x):
+    """Sine and cosine, numbers from -1 to 1 also where x has no digits after the point."""
+    quadrant, angle = _reduced(_F(x))
+    return sincos_in_quadrant(quadrant, minimum(maximum(angle, _F(-0.8)), _F(0.8)))
+
+
+@inlined
+def _sin(x):
+    return _sincos_of_any(x)[0]
+
+
+@inlined
+def _cos(x):
+    return _sincos_of_any(x)[1]
+
+
+@inlined
+def _atan(x):
+    x = _F(x)
+    return where(x == x, _with_sign(arctan2(abs(x), _F(1.0)), x), x)
+
+
+@inlined
+def _any_log(x):
+    x = _F(x)
+    return where(x > _F(0.0), log(x), where(x == _F(0.0), _F(-np.inf), _F(np.nan)))
+
+
+# What formulas may have, in single precision, by the names that sympy prints.
+ELEMENTARY = {
+    "exp": _exp,
+    "log": _any_log,
+    "sin": _sin,
+    "cos": _cos,
+    "atan": _atan,
+    "sinh": _sinh,
+    "cosh": _cosh,
+    "tanh": _tanh,
+}
