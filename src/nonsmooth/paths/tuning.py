@@ -111,7 +111,7 @@ class Cost:
     # by precision, all in the fastest scenes
     block_step: float = 5e-8
     path_step: Mapping[str, float] = field(
-        default_factory=lambda: {"float32": 1e-9, "float64": 1.5e-8}
+        default_factory=lambda: {"float32": 1e-9, "float64": 2.5e-9}
     )
     # chosen: largest number of steps of a path, beyond which their count is not exact
     most_steps: float = 1e15

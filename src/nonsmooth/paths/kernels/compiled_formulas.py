@@ -9,7 +9,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from nonsmooth.paths.kernels.single_precision import ELEMENTARY
+from nonsmooth.paths.kernels.vector_math import ELEMENTARY
 from nonsmooth.scenes.formulas import compilable
 
 
@@ -36,9 +36,8 @@ def compiled(
         void(out, state, width, lanes): writes out[i] for each of the `lanes` columns of the
         state, whose rows are `width` long.
     """
-    modules = [ELEMENTARY, "math"] if precision == "float32" else "math"
     value = numba.njit(
-        sympy.lambdify(variables, compilable(expression), modules=modules, cse=True),
+        sympy.lambdify(variables, compilable(expression), modules=[ELEMENTARY, "math"], cse=True),
         error_model="numpy",
         forceinline=True,
     )

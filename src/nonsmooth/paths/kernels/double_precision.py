@@ -54,6 +54,13 @@ def _exp_parts(x):
 
 
 @inlined
+def exp(x):
+    """e^x; infinite from 709.5 on, and never below e^-708."""
+    power, rest = _exp_parts(minimum(maximum(x, -708.0), 710.0))
+    return fma(power, rest, power)
+
+
+@inlined
 def expm1(x):
     """e^x - 1 for x <= 0; to two ulps."""
     power, rest = _exp_parts(maximum(x, -700.0))
@@ -79,7 +86,7 @@ def _split(x):
 
 @inlined
 def _log_of(k, f, lost):
-    """K log 2 + log(1 + f) + lost."""
+    """Return k log 2 + log(1 + f) + lost."""
     s = f / (2.0 + f)
     square, half = s * s, 0.5 * f * f
     rest = square * polynomial(_ATANH, square)
@@ -119,10 +126,17 @@ def sincos_in_quadrant(quadrant, angle):
 
 
 @inlined
+def reduced(x):
+    """Return the integer k nearest to 2 x / pi, and x - k pi/2."""
+    k, word = _integer(x * (1 / _HALF_PI))
+    return word, fma(k, -_HALF_PI_LOW, fma(k, -_HALF_PI, x))
+
+
+@inlined
 def sincos(x):
     """Sine and cosine."""
-    k, word = _integer(x * (1 / _HALF_PI))
-    return sincos_in_quadrant(word, fma(k, -_HALF_PI_LOW, fma(k, -_HALF_PI, x)))
+    quadrant, angle = reduced(x)
+    return sincos_in_quadrant(quadrant, angle)
 
 
 @inlined

@@ -57,6 +57,16 @@ def _power_of_two(k):
 
 
 @inlined
+def exp(x):
+    """e^x; infinite from 88.4 on, and never below e^-87."""
+    x = minimum(maximum(x, _F(-87.0)), _F(89.0))
+    k = np.rint(x * _F(1.44269504))
+    f = fma(k, _F(2.12194440e-4), fma(k, _F(-0.693359375), x))
+    power = _power_of_two(k)
+    return fma(power, fma(f * f, polynomial(_EXP, f), f), power)
+
+
+@inlined
 def expm1(x):
     """e^x - 1 for x <= 0; to two ulps."""
     x = maximum(x, _F(-87.0))
@@ -118,8 +128,8 @@ def sincos_in_quadrant(quadrant, angle):
 
 
 @inlined
-def _reduced(x):
-    """Return k, as an integer, and x - k pi/2."""
+def reduced(x):
+    """Return the integer k nearest to 2 x / pi, and x - k pi/2."""
     k = np.rint(x * _F(0.636619772))
     angle = fma(k, _F(-7.54978995e-8), fma(k, _F(-4.83751297e-4), fma(k, _F(-1.5703125), x)))
     return _U(_I(k)), angle
@@ -128,7 +138,7 @@ def _reduced(x):
 @inlined
 def sincos(x):
     """Sine and cosine."""
-    quadrant, angle = _reduced(x)
+    quadrant, angle = reduced(x)
     return sincos_in_quadrant(quadrant, angle)
 
 
@@ -145,82 +155,3 @@ def arctan2(y, x):
     angle = where(steep, angle + _F(0.785398163), angle)
     angle = where(y > along, _F(1.57079633) - angle, angle)
     return where(x < _F(0.0), _F(3.14159265) - angle, angle)
-
-
-@inlined
-def _exp(x):
-    x = minimum(maximum(_F(x), _F(-87.0)), _F(89.0))  # 2^128, from 88.4 on, is infinite
-    k = np.rint(x * _F(1.44269504))
-    f = fma(k, _F(2.12194440e-4), fma(k, _F(-0.693359375), x))
-    power = _power_of_two(k)
-    return fma(power, fma(f * f, polynomial(_EXP, f), f), power)
-
-
-@inlined
-def _with_sign(size, x):
-    """Give a number >= 0 the sign of x."""
-    return from_bits(_U(bits(size) | _U(bits(x) & _U(0x80000000))))
-
-
-@inlined
-def _tanh(x):
-    x = _F(x)
-    less = expm1(_F(-2.0) * abs(x))
-    return _with_sign(-less / (less + _F(2.0)), x)
-
-
-@inlined
-def _cosh(x):
-    power = _exp(abs(_F(x)))
-    return _F(0.5) * (power + _F(1.0) / power)
-
-
-@inlined
-def _sinh(x):
-    x = _F(x)
-    size, power = abs(x), _exp(abs(x))
-    less = expm1(-minimum(size, _F(1.0)))
-    small = _F(-0.5) * less * (less + _F(2.0)) / (less + _F(1.0))
-    return _with_sign(where(size < _F(1.0), small, _F(0.5) * (power - _F(1.0) / power)), x)
-
-
-@inlined
-def _sincos_of_any(x):
-    """Sine and cosine, numbers from -1 to 1 also where x has no digits after the point."""
-    quadrant, angle = _reduced(_F(x))
-    return sincos_in_quadrant(quadrant, minimum(maximum(angle, _F(-0.8)), _F(0.8)))
-
-
-@inlined
-def _sin(x):
-    return _sincos_of_any(x)[0]
-
-
-@inlined
-def _cos(x):
-    return _sincos_of_any(x)[1]
-
-
-@inlined
-def _atan(x):
-    x = _F(x)
-    return where(x == x, _with_sign(arctan2(abs(x), _F(1.0)), x), x)
-
-
-@inlined
-def _any_log(x):
-    x = _F(x)
-    return where(x > _F(0.0), log(x), where(x == _F(0.0), _F(-np.inf), _F(np.nan)))
-
-
-# What formulas may have, in single precision, by the names that sympy prints.
-ELEMENTARY = {
-    "exp": _exp,
-    "log": _any_log,
-    "sin": _sin,
-    "cos": _cos,
-    "atan": _atan,
-    "sinh": _sinh,
-    "cosh": _cosh,
-    "tanh": _tanh,
-}

@@ -1,18 +1,52 @@
-"""Loops over formulas are vector instructions."""
+"""Loops over formulas are vector instructions, and as accurate as numbers of the state allow."""
 
 import re
 
+import numba
+import numpy as np
 import pytest
 
-from nonsmooth.paths.kernels.compiled_formulas import compiled
-from nonsmooth.paths.kernels.single_precision import ELEMENTARY
-from nonsmooth.scenes.formulas import FUNCTIONS
+from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
+from nonsmooth.paths.kernels.vector_math import ELEMENTARY
+from nonsmooth.scenes.formulas import FUNCTIONS, parse, vectorised
 from nonsmooth.scenes.symbols import STATE_VARIABLES, x
 
 
+@pytest.mark.parametrize("precision", ["float32", "float64"])
 @pytest.mark.parametrize("name", ELEMENTARY)
-def test_vectorised(name):
-    """In single precision there are no calls of the C library, which take several times as long."""
-    code = compiled(FUNCTIONS[name](3 * x), STATE_VARIABLES, "float32").inspect_llvm()
-    assert re.search(r"<\d+ x float>", code)
+def test_vectorised(name, precision):
+    """There are no calls of the C library, which take several times as long."""
+    code = compiled(FUNCTIONS[name](3 * x), STATE_VARIABLES, precision).inspect_llvm()
+    assert re.search(r"<\d+ x (float|double)>", code)
     assert not re.search(rf"call [^\n]*@(llvm\.)?{name}f?\b", code)
+
+
+@numba.njit
+def call_on(address, out, state):
+    """Evaluate a compiled formula over the columns of a state."""
+    evaluate(address, out.ctypes, state.ctypes, state.shape[1], len(out))
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "log(1 + exp(100*x))/100",
+        "log(cosh(100*x))/100",
+        "-log(exp(-100*x) + exp(-100*x**2))/100",
+        "x**2 + 0.3*log(x**2 + 1e-50)",
+        "1e6*(exp(1e-6*x) - 1)",
+        "x**2*cos(2) + sinh(3*x)/cosh(3*x)",
+        "tanh(1e3*x) + atan(x/1e3)*1e3",
+    ],
+)
+def test_range_and_digits_of_formulas(formula):
+    """Formulas and their slopes have the range of double precision, and the digits of the state."""
+    points = np.linspace(-1.5, 2.5, 41).astype("float32")
+    state, out = np.zeros((4, 41), "float32"), np.empty(41, "float32")
+    state[3] = points
+    expression = parse(formula, (x,))
+    for wanted in (expression, expression.diff(x)):
+        call_on(compiled(wanted, STATE_VARIABLES, "float32").address, out, state)
+        exact = vectorised(wanted, (x,))(points.astype(float))
+        # a rounding of the result in single precision, and of sums of terms of its size
+        assert np.allclose(out, exact, rtol=4 * np.finfo("float32").eps, atol=1e-6)
