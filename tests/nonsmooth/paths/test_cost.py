@@ -30,7 +30,7 @@ def test_hours_are_allowed():
 def test_double_precision_takes_longer():
     """The same steps are allowed in single precision, and refused in double."""
     paths = 10**6
-    steps = 3600 * tuning.COST.longest_run / (5 * paths * tuning.COST.path_step["float32"])
+    steps = 3600 * tuning.COST.longest_run / (2 * paths * tuning.COST.path_step["float32"])
     require_time(steps, Sampling(0.1, paths, 0, threads=1))
     with pytest.raises(ns.NonsmoothError, match="hours"):
         require_time(steps, Sampling(0.1, paths, 0, threads=1, precision="float64"))
