@@ -70,7 +70,7 @@ def test_solutions_solve_the_equation(made):
 
 
 def test_solvers_go_on_from_a_solution(made):
-    """From one that is near, an iteration is shorter and ends at the same one."""
+    """From one that is near, an iteration is not longer and ends at the same one."""
     solver, axes, _ = made
     masses = np.abs(solver.stationary(ACCURACY))
     for f, parity in ((y, ODD), (y**2, EVEN)):
@@ -81,7 +81,7 @@ def test_solvers_go_on_from_a_solution(made):
         found, same = solver.solve(values, parity, ACCURACY, near)
         assert getattr(solver, "iterations", 0) <= steps
         solver.solve(values, parity, ACCURACY, wanted)
-        # a solution is one: only rounding may need an iteration
+        # what has been solved is solved, up to rounding
         assert getattr(solver, "iterations", 0) <= 1
         change = solver.unfold(found - wanted, parity)
         assert np.sqrt(masses @ (change - masses @ change) ** 2) < 1e-6

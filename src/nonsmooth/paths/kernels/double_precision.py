@@ -20,7 +20,7 @@ _LOG2E, _LN2, _LN2_LOW = 1.4426950408889634, 0.6931471805599453, 2.3190468138462
 _HALF_PI, _HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17
 _SQRT_HALF = _U(0x3FE6A09E667F3BCD)  # the bits of sqrt(1/2)
 _ROUNDING = 6755399441055744.0  # 1.5 * 2^52: adding it leaves an integer in the lowest bits
-_MANTISSA, _BIAS = _U(0x000FFFFFFFFFFFFF), _U(1023)
+_MANTISSA = _U(0x000FFFFFFFFFFFFF)
 
 # Series, highest power first, each up to what is below 1e-17 in the range that its argument has:
 # (e^f - 1 - f) / f^2 for |f| <= log(2)/2, sin and cos up to pi/4, atan up to tan(pi/8), and
@@ -40,37 +40,40 @@ def _integer(x):
 
 
 @inlined
-def _power_of_two(word):
-    """2^k for the integer k in the lowest bits of a word."""
-    return from_bits(_U(_U(word + _BIAS) << _U(52)))
+def _power_of_two(word, more):
+    """2^(k + more) for the integer k in the lowest bits of a word."""
+    return from_bits(_U(_U(word + _U(1023 + more)) << _U(52)))
 
 
 @inlined
 def _exp_parts(x):
-    """Split e^x into 2^k and e^f; return 2^k and e^f - 1."""
+    """Split e^x into 2^k and e^f; return k, in the lowest bits of a word, and e^f - 1."""
     k, word = _integer(x * _LOG2E)
     f = fma(k, -_LN2_LOW, fma(k, -_LN2, x))
-    return _power_of_two(word), fma(f * f, polynomial(_EXP, f), f)
+    return word, fma(f * f, polynomial(_EXP, f), f)
 
 
 @inlined
 def exp(x):
-    """e^x; infinite from 709.5 on, and never below e^-708."""
-    power, rest = _exp_parts(minimum(maximum(x, -708.0), 710.0))
-    return fma(power, rest, power)
+    """e^x; 0 below e^-708."""
+    word, rest = _exp_parts(minimum(maximum(x, -708.0), 710.0))
+    half = _power_of_two(word, -1)  # 2^1024 is infinite, and not all that it is a factor of
+    return where(x < -708.0, 0.0, 2.0 * fma(half, rest, half))
 
 
 @inlined
 def expm1(x):
     """e^x - 1 for x <= 0; to two ulps."""
-    power, rest = _exp_parts(maximum(x, -700.0))
+    word, rest = _exp_parts(maximum(x, -700.0))
+    power = _power_of_two(word, 0)
     return fma(power, rest, power - 1.0)
 
 
 @inlined
 def decay(x):
     """e^-x for x >= 0; to an ulp of 1."""
-    power, rest = _exp_parts(-minimum(x, 700.0))
+    word, rest = _exp_parts(-minimum(x, 700.0))
+    power = _power_of_two(word, 0)
     return fma(power, rest, power)
 
 
@@ -96,14 +99,14 @@ def _log_of(k, f, lost):
 
 @inlined
 def log(x):
-    """Log x for x > 0."""
+    """Return the natural logarithm of x > 0."""
     k, f = _split(x)
     return _log_of(k, f, 0.0)
 
 
 @inlined
 def log1p(x):
-    """log(1 + x) for x >= 0."""
+    """Return log(1 + x) for x >= 0."""
     u = 1.0 + x
     k, f = _split(u)
     # the rounding error of u = 1 + x, divided by u; where u > 2 it does not matter

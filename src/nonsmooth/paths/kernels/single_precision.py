@@ -57,23 +57,27 @@ def _power_of_two(k):
 
 
 @inlined
-def exp(x):
-    """e^x; infinite from 88.4 on, and never below e^-87."""
-    x = minimum(maximum(x, _F(-87.0)), _F(89.0))
+def _exp_parts(x):
+    """Split e^x into 2^k and e^f; return k and e^f - 1."""
     k = np.rint(x * _F(1.44269504))
     f = fma(k, _F(2.12194440e-4), fma(k, _F(-0.693359375), x))
-    power = _power_of_two(k)
-    return fma(power, fma(f * f, polynomial(_EXP, f), f), power)
+    return k, fma(f * f, polynomial(_EXP, f), f)
+
+
+@inlined
+def exp(x):
+    """e^x; 0 below e^-86."""
+    k, rest = _exp_parts(minimum(maximum(x, _F(-86.0)), _F(89.0)))
+    half = _power_of_two(k - _F(1.0))  # 2^128 is infinite, and not all that it is a factor of
+    return where(x < _F(-86.0), _F(0.0), _F(2.0) * fma(half, rest, half))
 
 
 @inlined
 def expm1(x):
     """e^x - 1 for x <= 0; to two ulps."""
-    x = maximum(x, _F(-87.0))
-    k = np.rint(x * _F(1.44269504))
-    f = fma(k, _F(2.12194440e-4), fma(k, _F(-0.693359375), x))
+    k, rest = _exp_parts(maximum(x, _F(-87.0)))
     power = _power_of_two(k)
-    return fma(power, fma(f * f, polynomial(_EXP, f), f), power - _F(1.0))
+    return fma(power, rest, power - _F(1.0))
 
 
 @inlined
@@ -97,14 +101,14 @@ def _split(x):
 
 @inlined
 def log(x):
-    """Log x for x > 0."""
+    """Return the natural logarithm of x > 0."""
     k, f = _split(x)
     return fma(k, _F(0.693147181), fma(f * f, polynomial(_LOG, f), f))
 
 
 @inlined
 def log1p(x):
-    """log(1 + x) for x >= 0."""
+    """Return log(1 + x) for x >= 0."""
     u = _F(1.0) + x
     k, f = _split(u)
     # the rounding error of u = 1 + x, divided by u; where u > 2 it does not matter

@@ -1,9 +1,10 @@
 """Elementary functions for loops that the compiler turns into vector instructions.
 
 They are branch-free polynomials, good to about one unit in the last place, because a loop with
-calls of the C library is not vectorised. The type of the number decides on the precision. Those
-with a limited range do not look at their argument: what is infinite is taken for the largest
-number.
+calls of the C library is not vectorised. The type of the number decides on the precision. Functions
+for flows are only right in the range that is given; those of formulas (`ELEMENTARY`) are right for
+all numbers, except for logarithms of numbers that are not normalised, below 1e-38 or 2e-308, and
+for angles of which only the digits before the point are known, above 1e5 or 1e14.
 """
 
 import math
@@ -67,11 +68,6 @@ def _choose_sincos_in_quadrant(quadrant, angle):
 
 
 @inlined
-def _exp(x):
-    return exp(x)
-
-
-@inlined
 def _any_log(x):
     found = where(x < like(x, np.inf), log(x), x)
     special = where(x == like(x, 0.0), like(x, -np.inf), like(x, np.nan))
@@ -129,16 +125,16 @@ def _of_formulas(compiled):
 
     @overload(function)
     def choose(x):
-        if isinstance(x, types.Integer):
-            return lambda x: compiled(float(x))
-        return lambda x: compiled(x)
+        if isinstance(x, types.Float):
+            return lambda x: compiled(x)
+        return lambda x: compiled(float(x))
 
     return function
 
 
-# What formulas may have, by the names that sympy prints; infinities and 0 are what they are for C.
+# What formulas may have, by the names that sympy prints.
 ELEMENTARY = {
-    "exp": _of_formulas(_exp),
+    "exp": _of_formulas(exp),
     "log": _of_formulas(_any_log),
     "sin": _of_formulas(_sin),
     "cos": _of_formulas(_cos),
