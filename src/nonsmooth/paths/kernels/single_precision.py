@@ -117,21 +117,6 @@ def log1p(x):
 
 
 @inlined
-def sincos_in_quadrant(quadrant, angle):
-    """Sine and cosine of quadrant * pi/2 + angle, for |angle| <= pi/4."""
-    square = angle * angle
-    sine = fma(polynomial(_SIN, square) * square, angle, angle)
-    cosine = fma(polynomial(_COS, square), square, _F(1.0))
-    odd = _U(quadrant & _U(1)) != _U(0)
-    first = where(odd, cosine, sine)
-    second = where(odd, sine, cosine)
-    return (
-        from_bits(_U(bits(first) ^ _U(_U(quadrant & _U(2)) << _U(30)))),
-        from_bits(_U(bits(second) ^ _U(_U(_U(quadrant + _U(1)) & _U(2)) << _U(30)))),
-    )
-
-
-@inlined
 def reduced(x):
     """Return the integer k nearest to 2 x / pi, and x - k pi/2."""
     k = np.rint(x * _F(0.636619772))
@@ -140,22 +125,21 @@ def reduced(x):
 
 
 @inlined
-def sincos(x):
-    """Sine and cosine."""
-    quadrant, angle = reduced(x)
-    return sincos_in_quadrant(quadrant, angle)
+def short_sincos(angle):
+    """Sine and cosine of |angle| <= pi/4."""
+    square = angle * angle
+    sine = fma(polynomial(_SIN, square) * square, angle, angle)
+    return sine, fma(polynomial(_COS, square), square, _F(1.0))
 
 
 @inlined
-def arctan2(y, x):
-    """Angle of (x, y) for y >= 0, in [0, pi]."""
-    along = abs(x)
-    low, high = minimum(along, y), maximum(maximum(along, y), _F(1e-37))
-    steep = low > _F(0.414213562) * high
-    # tan(angle - pi/4) is used where the angle is steep
-    z = where(steep, low - high, low) / where(steep, low + high, high)
+def short_arctan(z):
+    """Angle of (1, z) for |z| <= tan(pi/8)."""
     square = z * z
-    angle = fma(polynomial(_ATAN, square) * square, z, z)
-    angle = where(steep, angle + _F(0.785398163), angle)
-    angle = where(y > along, _F(1.57079633) - angle, angle)
-    return where(x < _F(0.0), _F(3.14159265) - angle, angle)
+    return fma(polynomial(_ATAN, square) * square, z, z)
+
+
+@inlined
+def negated(x, quadrant):
+    """-x if the number of a quadrant is 2 or 3, up to multiples of 4, else x."""
+    return from_bits(_U(bits(x) ^ _U(_U(_U(quadrant) & _U(2)) << _U(30))))

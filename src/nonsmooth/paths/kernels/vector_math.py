@@ -41,30 +41,49 @@ decay = _for_kernels("decay", "e^-x for x >= 0")
 expm1 = _for_kernels("expm1", "e^x - 1 for x <= 0")
 log = _for_kernels("log", "log x for x > 0")
 log1p = _for_kernels("log1p", "log(1 + x) for x >= 0")
-sincos = _for_kernels("sincos", "(sin x, cos x)")
 reduced = _for_kernels("reduced", "x less multiples of pi/2")
+_short_sincos = _for_kernels("short_sincos", "(sin x, cos x)")
+_short_arctan = _for_kernels("short_arctan", "arctan x")
 
 
-def arctan2(y, x):
-    """Angle of the point (x, y) for y >= 0, in [0, pi]."""
-    raise TypeError("arctan2 is for kernels; outside of them use numpy")
+def _negated(x, quadrant):
+    raise TypeError("signs of quadrants are for kernels")
 
 
-@overload(arctan2)
-def _choose_arctan2(y, x):
-    chosen = _precision(y).arctan2
-    return lambda y, x: chosen(y, x)
+@overload(_negated)
+def _choose_negated(x, quadrant):
+    chosen = _precision(x).negated
+    return lambda x, quadrant: chosen(x, quadrant)
 
 
+@inlined
 def sincos_in_quadrant(quadrant, angle):
-    """(sin, cos) of quadrant * pi/2 + angle, for |angle| <= pi/4."""
-    raise TypeError("sincos_in_quadrant is for kernels; outside of them use numpy")
+    """Sine and cosine of quadrant * pi/2 + angle, for |angle| <= pi/4."""
+    sine, cosine = _short_sincos(angle)
+    odd = like(quadrant, quadrant & like(quadrant, 1)) != like(quadrant, 0)
+    first = where(odd, cosine, sine)
+    second = where(odd, sine, cosine)
+    return _negated(first, quadrant), _negated(second, quadrant + like(quadrant, 1))
 
 
-@overload(sincos_in_quadrant)
-def _choose_sincos_in_quadrant(quadrant, angle):
-    chosen = _precision(angle).sincos_in_quadrant
-    return lambda quadrant, angle: chosen(quadrant, angle)
+@inlined
+def sincos(x):
+    """Sine and cosine."""
+    quadrant, angle = reduced(x)
+    return sincos_in_quadrant(quadrant, angle)
+
+
+@inlined
+def arctan2(y, x):
+    """Angle of (x, y) for y >= 0, in [0, pi]."""
+    along, pi = abs(x), like(x, math.pi)
+    low, high = minimum(along, y), maximum(maximum(along, y), like(x, 1e-37))
+    steep = low > like(x, math.sqrt(2) - 1) * high
+    # tan(angle - pi/4) is used where the angle is steep
+    angle = _short_arctan(where(steep, low - high, low) / where(steep, low + high, high))
+    angle = where(steep, angle + like(x, math.pi / 4), angle)
+    angle = where(y > along, like(x, math.pi / 2) - angle, angle)
+    return where(x < like(x, 0.0), pi - angle, angle)
 
 
 @inlined
