@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from nonsmooth.dimensions import Structure
-from nonsmooth.scenes.noises import Hamiltonian, KanaiTajimi, Langevin, OrnsteinUhlenbeck, White
+from nonsmooth.scenes.noises import NOISES, Hamiltonian, Langevin
 from nonsmooth.scenes.scene import Scene
 from reproduction.errors import ConfigError, configured_by
 from studies.units import Units, in_si
@@ -42,7 +42,6 @@ POWERS = {
     "friction_force": {"force": 1},
     "contact_force": {"force": 1},
 }
-_NOISES = {"white": White, "langevin": OrnsteinUhlenbeck, "hamiltonian": KanaiTajimi}
 
 
 def is_structure(parameters: Mapping) -> bool:
@@ -90,7 +89,7 @@ def scene_of(parameters: Mapping[str, Any], names: Mapping[str, str]) -> tuple[S
 def _noise(noise, sigma):
     if isinstance(noise, Mapping):
         return (Hamiltonian if "H" in noise else Langevin)(**noise, sigma=sigma)
-    return _NOISES[noise](sigma=sigma)
+    return NOISES[noise](sigma=sigma)
 
 
 def structure_of(parameters: Mapping[str, Any]) -> Structure:

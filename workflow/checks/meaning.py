@@ -63,7 +63,7 @@ def _scene(key, parameters):
         if isinstance(noise, dict):
             noise = (Hamiltonian if "H" in noise else Langevin)(**noise)
         else:
-            noise = NOISES[noise]
+            noise = NOISES[noise]()
     with configured_by(*key, "potential"):
         Scene(model, noise, potential=parameters["potential"]).potential_expression  # noqa: B018
     with configured_by(*key, "observable"):

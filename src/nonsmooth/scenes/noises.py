@@ -4,12 +4,13 @@
 `OrnsteinUhlenbeck` and `KanaiTajimi` make noises of types 1 and 2 with linear equations.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
+import scipy
 import sympy
-from scipy.optimize import minimize_scalar
 
 from nonsmooth.checks import as_number, require_parameter
 from nonsmooth.errors import SceneError, quoted
@@ -218,7 +219,7 @@ class Hamiltonian:
                 def at(turn, near=near, r=r):
                     return H(r * np.cos(near + turn), r * np.sin(near + turn))
 
-                turn = minimize_scalar(
+                turn = scipy.optimize.minimize_scalar(
                     at,
                     bounds=(-angle[1], angle[1]),
                     method="bounded",
@@ -272,13 +273,14 @@ def KanaiTajimi(stiffness: float = 1.0, damping: float = 1.0, sigma: float = 1.0
     return Hamiltonian(H=f"{k!r}*eta**2/2 + zeta**2/2", F=f"{gamma!r}", sigma=sigma)
 
 
-NOISES: dict[str, Noise] = {
-    "white": White(),
-    "langevin": OrnsteinUhlenbeck(),
-    "hamiltonian": KanaiTajimi(),
+# makers of the noises that have all parameters 1; what is not used is not derived
+NOISES: dict[str, Callable[..., Noise]] = {
+    "white": White,
+    "langevin": OrnsteinUhlenbeck,
+    "hamiltonian": KanaiTajimi,
 }
 # what a scene may call its noise: by its kind, or as engineers do
-NAMES: dict[str, Noise] = NOISES | {
+NAMES: dict[str, Callable[..., Noise]] = NOISES | {
     "ornstein_uhlenbeck": NOISES["langevin"],
     "kanai_tajimi": NOISES["hamiltonian"],
 }

@@ -77,7 +77,7 @@ def function(kind: str, confined: bool = True) -> sympy.Expr:
 
 def generator(psi: sympy.Expr, kind: str) -> sympy.Expr:
     """Return A_n psi of eq. (9) of the paper, with the drift of Table 2."""
-    noise = NOISES[kind]
+    noise = NOISES[kind]()
     transport = sum(f * sympy.diff(psi, s) for s, f in equations.drift(noise).items())
     return sympy.diff(psi, noise.driven, 2) / 2 + transport
 

@@ -16,7 +16,7 @@ def state_equations():
     plain, cells : pandas.DataFrame
     """
     plain, cells = [], []
-    for noise in NOISES.values():
+    for noise in (make() for make in NOISES.values()):
         drift, sigma = equations.drift(noise), equations.diffusion(noise)
         state = sympy.latex(sympy.Matrix(list(drift)))
         plain += [

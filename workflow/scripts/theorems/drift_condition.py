@@ -46,9 +46,9 @@ def search(potentials, langevin, damping, n, points, reach):
     CheckError
         If an inequality fails by more than rounding, other than Claim 10 of the paper as printed.
     """
-    forcings = {"white": [("", NOISES["white"])]}
+    forcings = {"white": [("", NOISES["white"]())]}
     forcings["langevin"] = [(v, Langevin(v)) for v in langevin]
-    forcings["hamiltonian"] = [("", NOISES["hamiltonian"])]
+    forcings["hamiltonian"] = [("", NOISES["hamiltonian"]())]
     cases, found = [], []
     for model, kind in itertools.product(potentials, forcings):
         for (v, noise), U, c, k in itertools.product(forcings[kind], potentials[model], damping, n):

@@ -61,7 +61,7 @@ from nonsmooth.scenes.scene import Scene
 _PLASTIC, _FRICTION, _SPRING = 0, 1, 2  # what the penalty force is
 _WHITE, _LANGEVIN, _HAMILTONIAN = 0, 1, 2
 _NOISE_CODE = {"white": _WHITE, "langevin": _LANGEVIN, "hamiltonian": _HAMILTONIAN}
-_VELOCITY, _PENALTY_FORCE, _FORMULA = 0, 1, 2  # observables
+_VELOCITY, _PENALTY_FORCE, _DISPLACEMENT, _FORMULA = 0, 1, 2, 3  # observables
 
 
 class Strang(NamedTuple):
@@ -74,9 +74,10 @@ class Strang(NamedTuple):
     penalty force; `omega` is the root of `outer`, and `rate` the damping in the flow of the
     velocity (0 for white noise, whose step has it). `transition` (2 x 2, row by row, less the
     identity) and `factor` (lower triangle) are the exact Gaussian step of the linear noise's
-    (zeta, eta), or of one variable alone in the first entries. `slope`, `first_drift`,
-    `second_drift` and `formula` are addresses of U', of the noise's drifts and of g; 0 where
-    they are not used, as compiling one takes a tenth of a second. `control` holds the
+    (zeta, eta), or of one variable alone in the first entries. `spring` holds the coefficients of
+    x and x^3 in U', if there is nothing else in it. `slope`, `first_drift`, `second_drift` and
+    `formula` are addresses of U', of the noise's drifts and of g; 0 where they are not used, as
+    compiling the first one takes half a second. `control` holds the
     coefficients of a polynomial in y / `reach`, the integrand of the control variate, which is
     used if `controlled`.
     """
@@ -99,6 +100,7 @@ class Strang(NamedTuple):
     rate: float
     transition: tuple
     factor: tuple
+    spring: tuple
     slope: int
     first_drift: int
     second_drift: int
@@ -134,6 +136,7 @@ def coefficients(scene: Scene, step: float, precision: str = "float32") -> Stran
     knot, inner, outer = scene.mechanics.penalty.at(scene.n)
     slope = sympy.diff(scene.potential_expression, symbols.x)
     pushed = slope != 0 and "x" in scene.state
+    spring = _spring(slope)
     observable = _observable_code(scene)
 
     def formula(expression, used):
@@ -160,7 +163,8 @@ def coefficients(scene: Scene, step: float, precision: str = "float32") -> Stran
         rate=number(0.0 if white else scene.damping),
         transition=tuple(map(number, transition)),
         factor=tuple(map(number, factor)),
-        slope=formula(slope, pushed),
+        spring=tuple(map(number, spring or (0.0, 0.0))),
+        slope=formula(slope, pushed and spring is None),
         first_drift=formula(scene.noise.drift.get(scene.noise.driven), not linear),
         second_drift=formula(scene.noise.drift.get(symbols.eta), not linear),
         formula=formula(scene.observable_expression, observable == _FORMULA),
@@ -218,6 +222,14 @@ def _is_linear(equations):
     return not jacobian.free_symbols and not any(at_rest)
 
 
+def _spring(slope):
+    """Coefficients of x and x^3 in a slope that has no other terms."""
+    if not slope.is_polynomial(symbols.x):
+        return None
+    terms = sympy.Poly(slope, symbols.x).as_dict()
+    return (terms.pop((1,), 0), terms.pop((3,), 0)) if not terms.keys() - {(1,), (3,)} else None
+
+
 def _penalty_code(model):
     if model.is_friction:
         return _FRICTION
@@ -227,7 +239,8 @@ def _penalty_code(model):
 def _observable_code(scene):
     if scene.observes_penalty_force:
         return _PENALTY_FORCE
-    return _VELOCITY if scene.observable_expression == symbols.y else _FORMULA
+    simple = {symbols.y: _VELOCITY, symbols.x: _DISPLACEMENT}
+    return simple.get(scene.observable_expression, _FORMULA)
 
 
 def gaussian_step(matrix: np.ndarray, sigma: float, step: float) -> tuple[tuple, tuple]:
@@ -380,6 +393,9 @@ def _gain(s, data, weight, lanes):
     if s.observable == _VELOCITY:
         for i in range(lanes):
             data[GAIN, i] = fma(weight, data[Y, i], data[GAIN, i])
+    elif s.observable == _DISPLACEMENT:
+        for i in range(lanes):
+            data[GAIN, i] = fma(weight, data[X, i], data[GAIN, i])
     elif s.observable == _FORMULA:
         evaluate(s.formula, data[WORK].ctypes, data[ZETA:].ctypes, WIDTH, lanes)
         for i in range(lanes):
@@ -451,7 +467,12 @@ def _accelerate(s, data, t, lanes):
                 data[Y, i], t, s.knot, like(t, 1.0) if s.limit else s.inner
             )
         return
-    if s.pushed:
+    if s.pushed and s.slope == 0:
+        linear, cubic = s.spring
+        for i in range(lanes):
+            x = data[X, i]
+            data[WORK, i] = data[ETA, i] - x * fma(cubic, x * x, linear)
+    elif s.pushed:
         evaluate(s.slope, data[WORK].ctypes, data[ZETA:].ctypes, WIDTH, lanes)
         for i in range(lanes):
             data[WORK, i] = data[ETA, i] - data[WORK, i]
