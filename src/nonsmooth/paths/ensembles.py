@@ -30,15 +30,6 @@ from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES
 
 
-def compile_loops(precision: str) -> None:
-    """Compile the loops of the default scheme, which are the same for all its scenes."""
-    scene = Scene("friction")
-    fine, coarse = (registry.coefficients(scene, "strang", h, precision) for h in (0.1, 0.2))
-    panel = new_panel(scene, 0, 0, precision)
-    compile_march(fine, panel)
-    compile_march_pair(fine, registry.on_given_increments(coarse), panel)
-
-
 def gram(
     scene: Scene, times: ArrayLike, sampling: Sampling, control: bool = True, parts: int = 1
 ) -> np.ndarray:
