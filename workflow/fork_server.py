@@ -2,18 +2,20 @@
 
 Most jobs are shorter than their imports. `forked_jobs` starts ``python -P fork_server.py N F``, N
 the number of a socket and F what kernels may use of the processor, and asks it to run scripts.
-Modules of this repository are not imported before the fork: they may be edited during a run.
+Modules of this repository may be edited during a run. After that, each job imports them itself.
 """
 
 import contextlib
 import gc
 import importlib
+import importlib.util
 import json
 import os
 import runpy
 import signal
 import socket
 import sys
+from pathlib import Path
 
 LIBRARIES = (
     "PIL.PngImagePlugin",
@@ -46,6 +48,16 @@ LIBRARIES = (
     "tylax",
     "xarray",
 )
+# packages of this repository, and modules of theirs with which most of the others come
+OWN = ("nonsmooth", "reproduction")
+MODULES = (
+    "nonsmooth.crossing.probability",
+    "nonsmooth.paths.simulation",
+    "nonsmooth.statistics.asymptotic_variance",
+    "reproduction.agreement",
+    "reproduction.rendering.panels",
+    "reproduction.rendering.tables",
+)
 LONGEST = 2**16  # bytes of a request
 
 
@@ -65,8 +77,29 @@ def prepare(features: str) -> None:
         if features:
             numba.config.CPU_FEATURES = features
         numba.njit(lambda values: np.exp(values).sum())(np.ones(1))
+    for module in MODULES:
+        with contextlib.suppress(Exception):  # it may be half edited
+            importlib.import_module(module)
     gc.collect()
     gc.freeze()  # what is there stays: no job looks through it again
+
+
+def sources() -> dict[Path, tuple[int, int]]:
+    """Tell the state of the modules of this repository: when they were written, and their sizes."""
+    folders = [
+        Path(folder)
+        for found in map(importlib.util.find_spec, OWN)
+        for folder in (found and found.submodule_search_locations) or []
+    ]
+    known = {path: path.stat() for folder in folders for path in folder.rglob("*.py")}
+    return {path: (state.st_mtime_ns, state.st_size) for path, state in known.items()}
+
+
+def forget() -> None:
+    """Let the modules of this repository be imported anew."""
+    for name in list(sys.modules):
+        if name.partition(".")[0] in OWN:
+            del sys.modules[name]
 
 
 def serve(requests: socket.socket) -> dict:
@@ -110,8 +143,11 @@ def serve(requests: socket.socket) -> dict:
 
 if __name__ == "__main__":
     channel = socket.socket(fileno=int(sys.argv[1]))
+    before = sources()
     prepare(sys.argv[2])
     task = serve(channel)
+    if sources() != before:
+        forget()
     os.environ.update(task["environment"])
     sys.argv[:] = [task["script"]]
     sys.path.insert(0, os.path.dirname(task["script"]))

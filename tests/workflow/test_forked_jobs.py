@@ -1,5 +1,7 @@
 """Scripts that a server forks end as those that are started by a command."""
 
+import importlib.util
+import shutil
 import signal
 import subprocess
 import sys
@@ -9,7 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from snakemake.benchmark import BenchmarkRecord
 
-from workflow.dependencies import PACKAGES
+from support import ROOT
+from workflow import fork_server
 from workflow.forked_jobs import ForkServer
 
 
@@ -50,20 +53,51 @@ def test_a_script_is_the_main_program(run, tmp_path):
     assert (tmp_path / "found").read_text() == "given beside"
 
 
-def test_libraries_are_there_and_sources_of_this_repository_are_not(run):
-    """What may be edited during a run is imported by each job."""
-    run(
-        "import sys\n"
-        "assert {'xarray', 'numba', 'sympy', 'matplotlib.pyplot'} <= set(sys.modules)\n"
-        f"assert not set({PACKAGES}) & set(sys.modules)"
-    )
+def test_libraries_are_there(run):
+    """With the modules of this repository that most jobs need."""
+    wanted = {"xarray", "numba", "sympy", "matplotlib.pyplot", *fork_server.MODULES}
+    run(f"import sys; assert {wanted} <= set(sys.modules)")
 
 
-def test_an_edited_module_is_imported_anew(run, tmp_path):
+def test_libraries_and_modules_exist():
+    """What the server cannot import it leaves to the jobs, without a word."""
+    for name in (*fork_server.LIBRARIES, *fork_server.MODULES):
+        assert importlib.util.find_spec(name) is not None, name
+
+
+def test_an_edited_script_is_imported_anew(run, tmp_path):
     """The second job has the second value."""
     for value in (1, 22):
         (tmp_path / "edited.py").write_text(f"VALUE = {value}")
         run(f"import edited; assert edited.VALUE == {value}")
+
+
+def test_after_an_edit_modules_of_this_repository_are_imported_anew(run, tmp_path, monkeypatch):
+    """All of them, for others have imported what was edited; a module that is new counts, too."""
+    folder = tmp_path / "copies"
+    for package in fork_server.OWN:
+        shutil.copytree(ROOT / "src" / package, folder / package)
+    monkeypatch.setenv("PYTHONPATH", str(folder))
+    checks, panels = "nonsmooth.checks", "reproduction.rendering.panels"
+    with ForkServer() as other:
+        run(f"import sys; assert {{'{checks}', '{panels}'}} <= set(sys.modules)", server=other)
+        with open(folder / "nonsmooth/checks.py", "a") as file:
+            file.write("EDITED = True\n")
+        run("from nonsmooth.checks import EDITED", server=other)
+        run(f"import sys; assert '{panels}' not in sys.modules", server=other)
+
+
+def test_a_server_starts_though_a_module_is_broken(run, tmp_path, monkeypatch):
+    """The job that imports it says so."""
+    folder = tmp_path / "copies"
+    for package in fork_server.OWN:
+        shutil.copytree(ROOT / "src" / package, folder / package)
+    (folder / "nonsmooth/checks.py").write_text("def half(")
+    monkeypatch.setenv("PYTHONPATH", str(folder))
+    with ForkServer() as other:
+        run("import numpy", server=other)
+        with pytest.raises(subprocess.CalledProcessError):
+            run("import nonsmooth.checks", server=other)
 
 
 @pytest.mark.parametrize(
