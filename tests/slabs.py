@@ -16,14 +16,24 @@ def slab(grid, z, thickness, doublings):
 
     The first one is made by Richardson's extrapolation of implicit Euler steps to order 2.
     """
-    ones = np.eye(len(grid.speeds))
-    scattering = {parity: part.applied(ones) for parity, part in grid.eliminated(z).items()}
+    scattering = {parity: scattered(grid, z, parity)[0] for parity in (EVEN, ODD)}
     thin = thickness / 2**doublings
     one, two = (_step(scattering, grid.speeds, thin / k) for k in (1, 2))
     made = tuple(2 * fine - coarse for fine, coarse in zip(_doubled(*two), one, strict=True))
     for _ in range(doublings):
         made = _doubled(*made)
     return made
+
+
+def scattered(grid, z, parity):
+    """Compute z - A on the nodes that move, and the row that interpolates there at the start.
+
+    Values at the nodes that stand still follow from (z - A) h = 0.
+    """
+    many, A = len(grid.speeds), grid.generator[parity].toarray()
+    matrix, row = z * np.eye(len(A)) - A, grid.start[parity]
+    inside = np.linalg.solve(matrix[many:, many:], matrix[many:, :many])
+    return matrix[:many, :many] - matrix[:many, many:] @ inside, row[:many] - row[many:] @ inside
 
 
 def _doubled(reflection, transmission):

@@ -107,8 +107,7 @@ def fields(
     # doublings of the slab of a half space that has the source in its middle: half of it is as
     # thick as the start is far from the face, or at least half as thick
     nearest = 0 if math.isfinite(thickness) else max(2, math.floor(math.log2(2 * source / thin)))
-    ordinates, eliminated = unreduced(grid), grid.eliminated(z)
-    matrices, rows = ordinates.matrices(eliminated, ordinates.continued(eliminated))
+    matrices, rows = unreduced(grid).matrices(z)
     slab, seams, solved = _thin(matrices, thin), [], {}
     for left in reversed(range(doublings)):
         slab, seam = slab.doubled()

@@ -59,8 +59,8 @@ def fields(
     ToleranceError
         If the limit of the `effort` does not cover it.
     """
-    ordinates, eliminated = unreduced(grid), grid.eliminated(z)
-    modes = ordinates.modes(eliminated, ordinates.continued(eliminated))
+    ordinates = unreduced(grid)
+    modes = ordinates.modes(z)
     adjoint, decays = _Adjoint(modes), modes.decays.real
     found, slowest = [], np.min(decays, where=decays > 0, initial=np.max(decays))
     for length in thickness / 2.0 ** np.arange(halvings + 1):
@@ -192,8 +192,7 @@ def rounding(grid: PlaneOrdinates, z: float, thickness: float) -> float:
     grid, z, thickness
         As for `fields`.
     """
-    ordinates, eliminated = unreduced(grid), grid.eliminated(z)
-    modes = ordinates.modes(eliminated, ordinates.continued(eliminated))
+    modes = unreduced(grid).modes(z)
     strengths = np.linalg.solve(modes.at_wall(thickness), modes.ones)
     return np.finfo(float).eps * np.max(np.abs(strengths)) / np.linalg.norm(modes.ones)
 

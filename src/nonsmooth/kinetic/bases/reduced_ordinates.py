@@ -14,9 +14,12 @@ for even and odd parts e, o of h in the state. The modes of this small system so
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
@@ -52,12 +55,12 @@ class ReducedOrdinates:
     Attributes
     ----------
     grid : PlaneOrdinates
-    basis : numpy.ndarray, shape (k, r)
+    basis : numpy.ndarray or sparse array, shape (k, r)
         Functions on the nodes with g > 0 or their mirror images.
     """
 
     grid: PlaneOrdinates
-    basis: np.ndarray
+    basis: np.ndarray | sp.sparray
 
     def first_passage(self, z: complex, intervals: np.ndarray) -> np.ndarray:
         """E exp(-z tau), tau the first time that int_0^t g leaves an interval.
@@ -72,8 +75,7 @@ class ReducedOrdinates:
         -------
         numpy.ndarray of complex, shape (m,)
         """
-        eliminated = self.grid.eliminated(z)
-        modes = self.modes(eliminated, self.continued(eliminated))
+        modes = self.modes(z)
         return np.array([modes.at_start(*interval) for interval in intervals])
 
     def functions(self, parity: int) -> np.ndarray:
@@ -84,17 +86,12 @@ class ReducedOrdinates:
         """Functions by which equations are tested, weighted by the masses; shape (r, k)."""
         return (self.grid.masses[:, None] * self.functions(parity)).T
 
-    def continued(self, eliminated: dict) -> dict:
-        """Continue the functions of each parity to all nodes, at the z of `eliminated`."""
-        return {p: part.continued(self.functions(p)) for p, part in eliminated.items()}
-
-    def matrices(self, eliminated: dict, continued: dict) -> tuple[dict, dict]:
+    def matrices(self, z: complex) -> tuple[dict, dict]:
         """Compute E and O, and the rows that interpolate even and odd functions at the start.
 
         Parameters
         ----------
-        eliminated, continued : dict
-            As for `modes`.
+        z : complex
 
         Returns
         -------
@@ -103,34 +100,66 @@ class ReducedOrdinates:
         rows : dict
             From parities, shape (r,).
         """
-        matrices, rows = {}, {}
-        for parity, part in eliminated.items():
-            matrices[parity] = self.tests(parity) @ part.at_moving(continued[parity])
-            rows[parity] = part.start_row() @ self.functions(parity)
-        return matrices, rows
+        found = {parity: part.at(z) for parity, part in self._projected.items()}
+        return tuple({parity: of[k] for parity, of in found.items()} for k in range(2))
 
-    def modes(self, eliminated: dict, continued: dict) -> "ReducedModes":
-        """Compute the modes.
+    @cached_property
+    def _projected(self):
+        """The generator between the functions of each parity and the nodes that stand still."""
+        return {p: _Projected(self.grid, p, self.functions(p), self.tests(p)) for p in (EVEN, ODD)}
 
-        Parameters
-        ----------
-        eliminated : dict
-            What `PlaneOrdinates.eliminated` returns for a place z.
-        continued : dict
-            What `continued` returns for it.
+    def modes(self, z: complex) -> "ReducedModes":
+        """Compute the modes at a place z.
 
         Raises
         ------
         ToleranceError
             If the limit of the `effort` does not cover it.
         """
-        matrices, rows = self.matrices(eliminated, continued)
+        matrices, rows = self.matrices(z)
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
         spend(of_modes(matrices[EVEN]))
         rates, even = _modes(matrices[EVEN], matrices[ODD])
         odd = matrices[EVEN] @ even / rates
         ones, decays = self.tests(EVEN) @ flow, _decaying(rates, self.grid.way)
         return ReducedModes(rates, even, odd, ones, rows[EVEN], rows[ODD], decays)
+
+
+class _Projected:
+    """(z - A) h on the nodes that move, tested, for functions h that solve it at the others.
+
+    What does not depend on z is computed once, so that it takes only as many operations for each z
+    as there are functions and nodes that stand still.
+
+    Parameters
+    ----------
+    grid : PlaneOrdinates
+    parity : {ODD, EVEN}
+    functions, tests : numpy.ndarray, shape (k, r) and (r, k)
+    """
+
+    def __init__(self, grid: PlaneOrdinates, parity: int, functions: np.ndarray, tests: np.ndarray):
+        A, row, many = grid.generator[parity].tocsr(), grid.start[parity], len(grid.speeds)
+        self._masses = _dense(tests @ functions)
+        self._moving = _dense(tests @ (A[:many, :many] @ functions))
+        self._out = _dense((A[:many, many:].T @ tests.T).T)
+        self._into = _dense(A[many:, :many] @ functions)
+        self._still = A[many:, many:].tocsc()
+        self._row, self._row_inside = functions.T @ row[:many], row[many:]
+
+    def at(self, z: complex) -> tuple[np.ndarray, np.ndarray]:
+        """Return the matrix, and the row that interpolates at the start."""
+        matrix, many = z * self._masses - self._moving, self._still.shape[0]
+        if many == 0:
+            return matrix, self._row
+        still = (z * sp.eye_array(many, format="csc") - self._still).tocsc()
+        inside = spla.splu(still).solve(self._into.astype(still.dtype))
+        return matrix - self._out @ inside, self._row + self._row_inside @ inside
+
+
+def _dense(matrix):
+    """Return a matrix that may be sparse as an array."""
+    return matrix.toarray() if sp.issparse(matrix) else matrix
 
 
 @dataclass(frozen=True)
@@ -240,7 +269,7 @@ def with_constants(ones: np.ndarray, functions: np.ndarray) -> np.ndarray:
 
 def unreduced(grid: PlaneOrdinates) -> ReducedOrdinates:
     """Take all ordinates."""
-    return ReducedOrdinates(grid, np.diag(1 / np.sqrt(grid.masses * np.abs(grid.speeds))))
+    return ReducedOrdinates(grid, sp.diags_array(1 / np.sqrt(grid.masses * np.abs(grid.speeds))))
 
 
 def _modes(even, odd):

@@ -15,7 +15,7 @@ from nonsmooth.kinetic.ordinates_line import ordinates
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates, boxed, plane_ordinates
 from nonsmooth.kinetic.tuning import PlaneLevel
 from references import COLORED_FRICTION, FRICTION, OBSTACLE, PLASTIC_STRAIN
-from slabs import slab
+from slabs import scattered, slab
 from support import coarse_ordinates
 
 SCENES = {"friction": COLORED_FRICTION, "plastic": PLASTIC_STRAIN, "obstacle": OBSTACLE}
@@ -118,7 +118,7 @@ class TestReducedOrdinates:
         change to slabs twice as thick, over sqrt(2) - 1, bounds an error of the order 1/2 or more.
         """
         grid, z, end = coarse_ordinates(SCENES[name]), 0.1 + 0.2j, 1.0
-        row, ones = grid.eliminated(z)[EVEN].start_row(), grid.ones[: len(grid.speeds)]
+        row, ones = scattered(grid, z, EVEN)[1], grid.ones[: len(grid.speeds)]
         doublings = math.ceil(math.log2(end / grid.way)) + 10
         found = []
         for more in (0, 1):
