@@ -100,8 +100,10 @@ class ReducedOrdinates:
         rows : dict
             From parities, shape (r,).
         """
-        found = {parity: part.at(z) for parity, part in self._projected.items()}
-        return tuple({parity: of[k] for parity, of in found.items()} for k in range(2))
+        matrices, rows = {}, {}
+        for parity, part in self._projected.items():
+            matrices[parity], rows[parity] = part.at(z)
+        return matrices, rows
 
     @cached_property
     def _projected(self):
