@@ -71,10 +71,12 @@ diagrams: env ## measure speed against error anew, and refresh the copies in doc
 	cp results/figures/speed_pde.png results/figures/speed_pde.pdf results/figures/speed_crossing.png results/figures/speed_crossing.pdf results/figures/speed_rare.png docs/
 
 # uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute.
-# Bytecode is made here: a hundred jobs import the same packages, and may not be allowed to keep it
+# Bytecode is made here, but for the packages' own tests: a hundred jobs import the same packages, and
+# may not be allowed to keep it. Files that are no modules of this Python are left out by compileall.
 define environment
 $(PYTHON) -m venv $(1)
-$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --compile-bytecode --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
+$(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)
+-$(1)/bin/python -m compileall -qq -j 0 -x '[/\\]tests?[/\\]' $(1)/lib
 endef
 
 env: $(VENV)/installed ## the environment alone, in .venv
