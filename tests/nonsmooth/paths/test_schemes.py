@@ -14,6 +14,7 @@ from scipy.interpolate import BarycentricInterpolator
 import nonsmooth as ns
 from nonsmooth.errors import AssumptionWarning, SceneError
 from nonsmooth.paths import ensembles, moments
+from nonsmooth.paths.kernels.compiled_formulas import compiled
 from nonsmooth.paths.kernels.panel import DELTA, ROWS, STATE, WIDTH, X, Y, new_panel
 from nonsmooth.paths.kernels.random_numbers import BLOCK
 from nonsmooth.paths.sampling import Sampling
@@ -297,3 +298,58 @@ def test_scheme_of_the_manual(tmp_path, monkeypatch):
         assert np.max(np.abs(one - other)) < 1e-14
     with pytest.raises(SceneError, match="unstable with step"):
         coefficients(scene, "explicit", 0.3)
+
+
+class TestSprings:
+    """Springs, linear and cubic, and g = x are part of the kernels; other formulas are compiled."""
+
+    @pytest.mark.parametrize(
+        ("potential", "spring"),
+        [
+            ("x**2/2", (1.0, 0.0)),
+            ("0.3*x**2 + 2*x**4", (0.6, 8.0)),
+            ("5*x**4 - x**2", (-2.0, 20.0)),
+            ("x**2*(x**2 + 1)/4", (0.5, 1.0)),
+        ],
+    )
+    def test_a_spring_is_recognised(self, potential, spring):
+        """However it is written."""
+        s = coefficients(ns.Scene("obstacle", potential=potential), "strang", 0.1, "float64")
+        assert s.slope == 0
+        assert s.spring == pytest.approx(spring)
+
+    @pytest.mark.parametrize(
+        "potential",
+        ["(x - 1)**2", "x**2/2 + x**6", "x**2/2 + cos(x)", "x**4 + abs(x)**3", "x**2 + x"],
+    )
+    def test_others_are_not_springs(self, potential):
+        """Their slope has other terms than x and x^3."""
+        s = coefficients(ns.Scene("obstacle", potential=potential), "strang", 0.1, "float64")
+        assert s.slope != 0
+        assert s.spring == (0, 0)
+
+    @pytest.mark.parametrize("noise", ["white", "langevin", "hamiltonian"])
+    @pytest.mark.parametrize("model", ["friction", "elasto_plastic", "obstacle"])
+    @pytest.mark.parametrize("potential", ["x**2/2", "x**2/3 + x**4/4"])
+    def test_paths_are_those_of_the_formulas(self, potential, model, noise):
+        """To rounding: x is multiplied by x^2, or the other way round."""
+        scene = ns.Scene(model, noise, potential=potential, n=20, observable="x", damping=0.5)
+        own = coefficients(scene, "strang", 0.05, "float64")
+        other = coefficients(
+            ns.Scene(model, noise, observable="x + sin(0.1*x)", potential="x**2"), "strang", 0.05
+        )
+        slope = sympy.diff(scene.potential_expression, symbols.x)
+        formulas = own._replace(
+            observable=other.observable,
+            slope=compiled(slope, symbols.STATE_VARIABLES, "float64").address,
+            formula=compiled(symbols.x, symbols.STATE_VARIABLES, "float64").address,
+        )
+        found = []
+        for s in (own, formulas):
+            panel = new_panel(scene, 5, 0, "float64")
+            march(s, panel, BLOCK, 100, -np.inf, np.inf)
+            found.append(np.vstack([panel.data[list(STATE)], panel.total]))
+        assert own.observable != other.observable
+        assert np.abs(found[0]).max() > 0.1
+        # 100 steps; rounding grows by what the flow of the penalty amplifies, hardly at n = 20
+        assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-11)
