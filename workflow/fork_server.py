@@ -91,8 +91,12 @@ def sources() -> dict[Path, tuple[int, int]]:
         for found in map(importlib.util.find_spec, OWN)
         for folder in (found and found.submodule_search_locations) or []
     ]
-    known = {path: path.stat() for folder in folders for path in folder.rglob("*.py")}
-    return {path: (state.st_mtime_ns, state.st_size) for path, state in known.items()}
+    known = {}
+    for path in (path for folder in folders for path in folder.rglob("*.py")):
+        with contextlib.suppress(OSError):  # an editor's lock, or gone again
+            state = path.stat()
+            known[path] = state.st_mtime_ns, state.st_size
+    return known
 
 
 def forget() -> None:

@@ -107,15 +107,16 @@ def fields(
     # doublings of the slab of a half space that has the source in its middle: half of it is as
     # thick as the start is far from the face, or at least half as thick
     nearest = 0 if math.isfinite(thickness) else max(2, math.floor(math.log2(2 * source / thin)))
-    matrices, rows = unreduced(grid).matrices(z)
-    slab, seams, solved = _thin(matrices, thin), [], {}
+    eliminated = unreduced(grid).eliminated(z)
+    even, odd = eliminated[EVEN], eliminated[ODD]
+    slab, seams, solved = _thin(even.matrix, odd.matrix, thin), [], {}
     for left in reversed(range(doublings)):
         slab, seam = slab.doubled()
         seams.append(seam)
         opaque = math.isinf(thickness) and _opaque(slab, ones)
         half = left <= halvings
         if half or len(seams) == nearest or (opaque and len(seams) < nearest):
-            sourced = _sourced(slab, seams, rows, least / thin)
+            sourced = _sourced(slab, seams, (even.row, odd.row), least / thin)
         if half or opaque:
             solutions = _solutions(slab, seams, ones, least / thin)
             solved[0 if opaque else left] = solutions, sourced
@@ -126,12 +127,11 @@ def fields(
     return found
 
 
-def _thin(matrices, thickness):
+def _thin(even, odd, thickness):
     """Make a slab within which most solutions change little, by a fraction for tanh.
 
     tanh(a) = a (1 + a^2/15) / (1 + 2 a^2/5) up to a^7/1575.
     """
-    even, odd = matrices[EVEN], matrices[ODD]
     spend(_THIN * len(even) ** 3)
     one, square = np.eye(len(even)), (thickness / 2) ** 2 * (odd @ even)
     above, below = one + square / 15, one + square * 2 / 5
@@ -165,14 +165,14 @@ def _sourced(slab, seams, rows, least):
     seams, found = [seam.adjoint() for seam in seams], []
     least = min(least, 2.0 ** (len(seams) - 2))
     one, half = np.eye(len(slab.symmetric)), seams[-1].half
-    both = rows[EVEN], rows[ODD]
-    if is_source(rows[EVEN], both):
-        source = rows[EVEN] / 2
+    even, odd = rows
+    if is_source(even, rows):
+        source = even / 2
         at_face = np.linalg.solve(one + slab.symmetric.T, half @ seams[-1].solve(source))
         at_source = seams[-1].solve(source + half @ at_face)
         found += _between(seams[:-1], at_source, at_face, (True, True), least)
-    if is_source(rows[ODD], both):
-        at_source = rows[ODD] / 2
+    if is_source(odd, rows):
+        at_source = odd / 2
         at_face = np.linalg.solve(one + slab.antisymmetric.T, half @ at_source)
         found += _between(seams[:-1], at_source, at_face, (True, True), least)
     return _joined(found)

@@ -75,7 +75,7 @@ class ReducedOrdinates:
         -------
         numpy.ndarray of complex, shape (m,)
         """
-        modes = self.modes(z)
+        modes = self.modes(self.eliminated(z))
         return np.array([modes.at_start(*interval) for interval in intervals])
 
     def functions(self, parity: int) -> np.ndarray:
@@ -86,49 +86,54 @@ class ReducedOrdinates:
         """Functions by which equations are tested, weighted by the masses; shape (r, k)."""
         return (self.grid.masses[:, None] * self.functions(parity)).T
 
-    def matrices(self, z: complex) -> tuple[dict, dict]:
-        """Compute E and O, and the rows that interpolate even and odd functions at the start.
-
-        Parameters
-        ----------
-        z : complex
-
-        Returns
-        -------
-        matrices : dict
-            From parities, shape (r, r).
-        rows : dict
-            From parities, shape (r,).
-        """
-        matrices, rows = {}, {}
-        for parity, part in self._projected.items():
-            matrices[parity], rows[parity] = part.at(z)
-        return matrices, rows
+    def eliminated(self, z: complex) -> dict[int, "Eliminated"]:
+        """Compute E and O from the parities of functions, at a place z."""
+        return {parity: part.at(z) for parity, part in self._projected.items()}
 
     @cached_property
     def _projected(self):
         """The generator between the functions of each parity and the nodes that stand still."""
         return {p: _Projected(self.grid, p, self.functions(p), self.tests(p)) for p in (EVEN, ODD)}
 
-    def modes(self, z: complex) -> "ReducedModes":
-        """Compute the modes at a place z.
+    def modes(self, eliminated: dict[int, "Eliminated"]) -> "ReducedModes":
+        """Compute the modes at the place of what is `eliminated`.
 
         Raises
         ------
         ToleranceError
             If the limit of the `effort` does not cover it.
         """
-        matrices, rows = self.matrices(z)
+        on_even, on_odd = eliminated[EVEN], eliminated[ODD]
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
-        spend(of_modes(matrices[EVEN]))
-        rates, even = _modes(matrices[EVEN], matrices[ODD])
-        odd = matrices[EVEN] @ even / rates
+        spend(of_modes(on_even.matrix))
+        rates, even = _modes(on_even.matrix, on_odd.matrix)
+        odd = on_even.matrix @ even / rates
         ones, decays = self.tests(EVEN) @ flow, _decaying(rates, self.grid.way)
-        return ReducedModes(rates, even, odd, ones, rows[EVEN], rows[ODD], decays)
+        return ReducedModes(rates, even, odd, ones, on_even.row, on_odd.row, decays)
+
+
+class Eliminated(NamedTuple):
+    """(z - A) h on the nodes that move, tested, for functions h that solve it at the others.
+
+    Attributes
+    ----------
+    matrix : numpy.ndarray, shape (r, r)
+    row : numpy.ndarray, shape (r,)
+        It interpolates at the start.
+    still : scipy.sparse.linalg.SuperLU, optional
+        Factors of z - A on the nodes that stand still, if there are any.
+    inside : numpy.ndarray, shape (s, r), optional
+        The functions there.
+    """
+
+    matrix: np.ndarray
+    row: np.ndarray
+    still: spla.SuperLU | None = None
+    inside: np.ndarray | None = None
 
 
 class _Projected:
-    """(z - A) h on the nodes that move, tested, for functions h that solve it at the others.
+    """The generator between functions of one parity, tests, and the nodes that stand still.
 
     What does not depend on z is computed once, so that it takes only as many operations for each z
     as there are functions and nodes that stand still.
@@ -137,26 +142,27 @@ class _Projected:
     ----------
     grid : PlaneOrdinates
     parity : {ODD, EVEN}
-    functions, tests : numpy.ndarray, shape (k, r) and (r, k)
+    functions, tests : numpy.ndarray or sparse array, shape (k, r) and (r, k)
     """
 
     def __init__(self, grid: PlaneOrdinates, parity: int, functions: np.ndarray, tests: np.ndarray):
         A, row, many = grid.generator[parity].tocsr(), grid.start[parity], len(grid.speeds)
         self._masses = _dense(tests @ functions)
         self._moving = _dense(tests @ (A[:many, :many] @ functions))
-        self._out = _dense((A[:many, many:].T @ tests.T).T)
-        self._into = _dense(A[many:, :many] @ functions)
+        self._out, self._into = (A[:many, many:].T @ tests.T).T, A[many:, :many] @ functions
         self._still = A[many:, many:].tocsc()
         self._row, self._row_inside = functions.T @ row[:many], row[many:]
 
-    def at(self, z: complex) -> tuple[np.ndarray, np.ndarray]:
-        """Return the matrix, and the row that interpolates at the start."""
+    def at(self, z: complex) -> Eliminated:
+        """Eliminate the nodes that stand still."""
         matrix, many = z * self._masses - self._moving, self._still.shape[0]
         if many == 0:
-            return matrix, self._row
-        still = (z * sp.eye_array(many, format="csc") - self._still).tocsc()
-        inside = spla.splu(still).solve(self._into.astype(still.dtype))
-        return matrix - self._out @ inside, self._row + self._row_inside @ inside
+            return Eliminated(matrix, self._row)
+        standing = (z * sp.eye_array(many, format="csc") - self._still).tocsc()
+        still = spla.splu(standing)
+        inside = still.solve(_dense(self._into).astype(standing.dtype))
+        row = self._row + self._row_inside @ inside
+        return Eliminated(matrix - self._out @ inside, row, still, inside)
 
 
 def _dense(matrix):

@@ -15,8 +15,6 @@ basis this is the derivative of what `reduced_ordinates` computes.
 """
 
 import numpy as np
-import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
 from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic.bases.reduced_ordinates import ReducedModes, ReducedOrdinates
@@ -45,7 +43,8 @@ def differentiated(
     -------
     complex
     """
-    modes, (lower, upper) = ordinates.modes(z), levels
+    eliminated, (lower, upper) = ordinates.eliminated(z), levels
+    modes = ordinates.modes(eliminated)
     if np.isinf(upper):
         modes, side = modes.mirrored(), -1
         solution = _Solution(modes, np.inf, -lower)
@@ -55,11 +54,11 @@ def differentiated(
         value = solution.by_levels(*moved)
     if ordinates.grid.change is None:
         return value
-    (even, even_row), (odd, odd_row) = (_changes(ordinates, z, parity) for parity in (EVEN, ODD))
+    (even, even_row), (odd, odd_row) = (_changes(ordinates, p, eliminated[p]) for p in (EVEN, ODD))
     return value + solution.by_matrices(even, odd) + solution.by_rows(even_row, side * odd_row)
 
 
-def _changes(ordinates, z, parity):
+def _changes(ordinates, parity, eliminated):
     """Differentiate E or O, and the row that interpolates at the start.
 
     Functions on the nodes that move solve (z - A) h = 0 at the others. If A changes there, they
@@ -67,15 +66,13 @@ def _changes(ordinates, z, parity):
     """
     grid, many = ordinates.grid, len(ordinates.grid.speeds)
     functions, tests = ordinates.functions(parity), ordinates.tests(parity)
-    A, row = grid.generator[parity], grid.start[parity]
-    if A.shape[0] == many:
+    if eliminated.still is None:
         return -tests @ (grid.change[parity] @ functions), np.zeros(functions.shape[1])
-    matrix = (z * sp.eye_array(A.shape[0], format="csc") - A).tocsc()
-    still = spla.splu(matrix[many:, many:])
-    inside = still.solve((matrix[many:, :many] @ functions).astype(matrix.dtype))
-    moving, standing = np.split(grid.change[parity] @ np.vstack([functions, -inside]), [many])
-    to_tests = (matrix[:many, many:].T @ tests.T).astype(matrix.dtype)
-    seen = still.solve(np.column_stack([to_tests, row[many:]]), trans="T").T @ standing
+    continued = np.vstack([functions, eliminated.inside])
+    moving, standing = np.split(grid.change[parity] @ continued, [many])
+    to_tests = -grid.generator[parity].tocsr()[:many, many:].T @ tests.T
+    seen_by = np.column_stack([to_tests, grid.start[parity][many:]])
+    seen = eliminated.still.solve(seen_by.astype(eliminated.inside.dtype), trans="T").T @ standing
     return seen[:-1] - tests @ moving, seen[-1]
 
 

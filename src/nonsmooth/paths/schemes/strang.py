@@ -227,7 +227,7 @@ def _spring(slope):
     if not slope.is_polynomial(symbols.x):
         return None
     terms = sympy.Poly(slope, symbols.x).as_dict()
-    return (terms.pop((1,), 0), terms.pop((3,), 0)) if not terms.keys() - {(1,), (3,)} else None
+    return None if terms.keys() - {(1,), (3,)} else (terms.get((1,), 0), terms.get((3,), 0))
 
 
 def _penalty_code(model):
@@ -471,7 +471,7 @@ def _accelerate(s, data, t, lanes):
         linear, cubic = s.spring
         for i in range(lanes):
             x = data[X, i]
-            data[WORK, i] = data[ETA, i] - x * fma(cubic, x * x, linear)
+            data[WORK, i] = data[ETA, i] - x * fma(cubic * x, x, linear)
     elif s.pushed:
         evaluate(s.slope, data[WORK].ctypes, data[ZETA:].ctypes, WIDTH, lanes)
         for i in range(lanes):
