@@ -86,16 +86,15 @@ def prepare(features: str) -> None:
 
 def sources() -> dict[Path, tuple[int, int]]:
     """Tell the state of the modules of this repository: when they were written, and their sizes."""
-    folders = [
-        Path(folder)
-        for found in map(importlib.util.find_spec, OWN)
-        for folder in (found and found.submodule_search_locations) or []
-    ]
     known = {}
-    for path in (path for folder in folders for path in folder.rglob("*.py")):
-        with contextlib.suppress(OSError):  # an editor's lock, or gone again
-            state = path.stat()
-            known[path] = state.st_mtime_ns, state.st_size
+    for found in map(importlib.util.find_spec, OWN):
+        for top in (found and found.submodule_search_locations) or []:
+            for folder, inner, files in os.walk(top):
+                inner[:] = set(inner) - {"__pycache__"}
+                for path in (Path(folder, name) for name in files if name.endswith(".py")):
+                    with contextlib.suppress(OSError):  # an editor's lock, or gone again
+                        state = path.stat()
+                        known[path] = state.st_mtime_ns, state.st_size
     return known
 
 

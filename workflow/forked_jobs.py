@@ -12,7 +12,7 @@ import signal
 import socket
 import subprocess
 import sys
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -91,8 +91,9 @@ class ForkServer:
             except (OSError, ValueError):
                 return False
             with benchmarked(job, record) if record is not None else nullcontext():
-                ours.sendall(b"\n")
-                # nothing if what waits for the job has been killed
+                # what waits for the job may have been killed
+                with suppress(OSError):
+                    ours.sendall(b"\n")
                 ended = answers.readline() or signal.SIGKILL
             if status := os.waitstatus_to_exitcode(int(ended)):
                 raise subprocess.CalledProcessError(status, f"{sys.executable} {script}")

@@ -332,7 +332,7 @@ class TestSprings:
     @pytest.mark.parametrize("model", ["friction", "elasto_plastic", "obstacle"])
     @pytest.mark.parametrize("potential", ["x**2/2", "x**2/3 + x**4/4"])
     def test_paths_are_those_of_the_formulas(self, potential, model, noise):
-        """To rounding: x is multiplied by x^2, or the other way round."""
+        """To rounding: products of three factors are formed in another order."""
         scene = ns.Scene(model, noise, potential=potential, n=20, observable="x", damping=0.5)
         own = coefficients(scene, "strang", 0.05, "float64")
         other = coefficients(
@@ -353,3 +353,12 @@ class TestSprings:
         assert np.abs(found[0]).max() > 0.1
         # 100 steps; rounding grows by what the flow of the penalty amplifies, hardly at n = 20
         assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-11)
+
+    def test_a_linear_spring_pulls_from_afar(self):
+        """Where x^2 is infinite in single precision and x is not."""
+        scene = ns.Scene("friction", "langevin", potential="x**2/2", observable="x", n=10)
+        s = coefficients(scene, "strang", 1e-3, "float32")
+        panel = new_panel(scene, 5, 0, "float32")
+        panel.data[X, 0] = 1e20
+        march(s, panel, 1, 1, -np.inf, np.inf)
+        assert panel.data[Y, 0] == pytest.approx(-1e17, rel=0.01)

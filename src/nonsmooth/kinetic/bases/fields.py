@@ -60,7 +60,7 @@ def fields(
         If the limit of the `effort` does not cover it.
     """
     ordinates = unreduced(grid)
-    modes = ordinates.modes(ordinates.eliminated(z))
+    modes = ordinates.modes(z)
     adjoint, decays = _Adjoint(modes), modes.decays.real
     found, slowest = [], np.min(decays, where=decays > 0, initial=np.max(decays))
     for length in thickness / 2.0 ** np.arange(halvings + 1):
@@ -192,8 +192,7 @@ def rounding(grid: PlaneOrdinates, z: float, thickness: float) -> float:
     grid, z, thickness
         As for `fields`.
     """
-    ordinates = unreduced(grid)
-    modes = ordinates.modes(ordinates.eliminated(z))
+    modes = unreduced(grid).modes(z)
     strengths = np.linalg.solve(modes.at_wall(thickness), modes.ones)
     return np.finfo(float).eps * np.max(np.abs(strengths)) / np.linalg.norm(modes.ones)
 

@@ -15,7 +15,7 @@ for even and odd parts e, o of h in the state. The modes of this small system so
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,6 +25,8 @@ from nonsmooth.grids.solver import EVEN, ODD
 from nonsmooth.kinetic import tuning
 from nonsmooth.kinetic.ordinates_plane import PlaneOrdinates
 from nonsmooth.linear_algebra.effort import of_modes, spend
+
+Matrix: TypeAlias = np.ndarray | sp.sparray
 
 
 class Fields(NamedTuple):
@@ -60,7 +62,7 @@ class ReducedOrdinates:
     """
 
     grid: PlaneOrdinates
-    basis: np.ndarray | sp.sparray
+    basis: Matrix
 
     def first_passage(self, z: complex, intervals: np.ndarray) -> np.ndarray:
         """E exp(-z tau), tau the first time that int_0^t g leaves an interval.
@@ -75,14 +77,14 @@ class ReducedOrdinates:
         -------
         numpy.ndarray of complex, shape (m,)
         """
-        modes = self.modes(self.eliminated(z))
+        modes = self.modes(z)
         return np.array([modes.at_start(*interval) for interval in intervals])
 
-    def functions(self, parity: int) -> np.ndarray:
+    def functions(self, parity: int) -> Matrix:
         """Basis of even or of odd functions, on the nodes that move; shape (k, r)."""
         return self.basis if parity == EVEN else np.sign(self.grid.speeds)[:, None] * self.basis
 
-    def tests(self, parity: int) -> np.ndarray:
+    def tests(self, parity: int) -> Matrix:
         """Functions by which equations are tested, weighted by the masses; shape (r, k)."""
         return (self.grid.masses[:, None] * self.functions(parity)).T
 
@@ -95,21 +97,22 @@ class ReducedOrdinates:
         """The generator between the functions of each parity and the nodes that stand still."""
         return {p: _Projected(self.grid, p, self.functions(p), self.tests(p)) for p in (EVEN, ODD)}
 
-    def modes(self, eliminated: dict[int, "Eliminated"]) -> "ReducedModes":
-        """Compute the modes at the place of what is `eliminated`.
+    def modes(self, z: complex) -> "ReducedModes":
+        """Compute the modes at a place z.
 
         Raises
         ------
         ToleranceError
             If the limit of the `effort` does not cover it.
         """
+        eliminated = self.eliminated(z)
         on_even, on_odd = eliminated[EVEN], eliminated[ODD]
         flow = np.abs(self.grid.speeds) * self.grid.ones[: len(self.grid.speeds)]
         spend(of_modes(on_even.matrix))
         rates, even = _modes(on_even.matrix, on_odd.matrix)
         odd = on_even.matrix @ even / rates
         ones, decays = self.tests(EVEN) @ flow, _decaying(rates, self.grid.way)
-        return ReducedModes(rates, even, odd, ones, on_even.row, on_odd.row, decays)
+        return ReducedModes(rates, even, odd, ones, on_even.row, on_odd.row, decays, eliminated)
 
 
 class Eliminated(NamedTuple):
@@ -124,19 +127,22 @@ class Eliminated(NamedTuple):
         Factors of z - A on the nodes that stand still, if there are any.
     inside : numpy.ndarray, shape (s, r), optional
         The functions there.
+    out : numpy.ndarray or sparse array, shape (r, s), optional
+        A from there to the tests.
     """
 
     matrix: np.ndarray
     row: np.ndarray
     still: spla.SuperLU | None = None
     inside: np.ndarray | None = None
+    out: Matrix | None = None
 
 
 class _Projected:
     """The generator between functions of one parity, tests, and the nodes that stand still.
 
-    What does not depend on z is computed once, so that it takes only as many operations for each z
-    as there are functions and nodes that stand still.
+    What does not depend on z is computed once, so that the time for each z does not grow with the
+    number of nodes that move.
 
     Parameters
     ----------
@@ -145,7 +151,7 @@ class _Projected:
     functions, tests : numpy.ndarray or sparse array, shape (k, r) and (r, k)
     """
 
-    def __init__(self, grid: PlaneOrdinates, parity: int, functions: np.ndarray, tests: np.ndarray):
+    def __init__(self, grid: PlaneOrdinates, parity: int, functions: Matrix, tests: Matrix):
         A, row, many = grid.generator[parity].tocsr(), grid.start[parity], len(grid.speeds)
         self._masses = _dense(tests @ functions)
         self._moving = _dense(tests @ (A[:many, :many] @ functions))
@@ -162,7 +168,7 @@ class _Projected:
         still = spla.splu(standing)
         inside = still.solve(_dense(self._into).astype(standing.dtype))
         row = self._row + self._row_inside @ inside
-        return Eliminated(matrix - self._out @ inside, row, still, inside)
+        return Eliminated(matrix - self._out @ inside, row, still, inside, self._out)
 
 
 def _dense(matrix):
@@ -187,6 +193,8 @@ class ReducedModes:
         They interpolate at the start.
     decays : numpy.ndarray, shape (r,)
         Rates at which the modes are taken to decay.
+    eliminated : dict
+        E and O from parities.
     """
 
     rates: np.ndarray
@@ -196,6 +204,7 @@ class ReducedModes:
     even_row: np.ndarray
     odd_row: np.ndarray
     decays: np.ndarray
+    eliminated: dict[int, Eliminated]
 
     def at_start(self, lower: float, upper: float) -> complex:
         """Value at x = 0 and the start, if it is 1 where the flow leaves an interval."""

@@ -43,8 +43,7 @@ def differentiated(
     -------
     complex
     """
-    eliminated, (lower, upper) = ordinates.eliminated(z), levels
-    modes = ordinates.modes(eliminated)
+    modes, (lower, upper) = ordinates.modes(z), levels
     if np.isinf(upper):
         modes, side = modes.mirrored(), -1
         solution = _Solution(modes, np.inf, -lower)
@@ -54,7 +53,9 @@ def differentiated(
         value = solution.by_levels(*moved)
     if ordinates.grid.change is None:
         return value
-    (even, even_row), (odd, odd_row) = (_changes(ordinates, p, eliminated[p]) for p in (EVEN, ODD))
+    (even, even_row), (odd, odd_row) = (
+        _changes(ordinates, p, modes.eliminated[p]) for p in (EVEN, ODD)
+    )
     return value + solution.by_matrices(even, odd) + solution.by_rows(even_row, side * odd_row)
 
 
@@ -70,8 +71,7 @@ def _changes(ordinates, parity, eliminated):
         return -tests @ (grid.change[parity] @ functions), np.zeros(functions.shape[1])
     continued = np.vstack([functions, eliminated.inside])
     moving, standing = np.split(grid.change[parity] @ continued, [many])
-    to_tests = -grid.generator[parity].tocsr()[:many, many:].T @ tests.T
-    seen_by = np.column_stack([to_tests, grid.start[parity][many:]])
+    seen_by = np.column_stack([-eliminated.out.T, grid.start[parity][many:]])
     seen = eliminated.still.solve(seen_by.astype(eliminated.inside.dtype), trans="T").T @ standing
     return seen[:-1] - tests @ moving, seen[-1]
 
