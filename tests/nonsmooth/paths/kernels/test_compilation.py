@@ -124,6 +124,7 @@ def compiled(tmp_path_factory):
 
 
 @pytest.mark.slow
+@pytest.mark.xdist_group("compiled")
 @pytest.mark.parametrize(
     "call",
     [
