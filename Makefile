@@ -72,7 +72,7 @@ diagrams: env ## measure speed against error anew, and refresh the copies in doc
 
 # uv, itself checked and installed by pip, takes seconds; where it cannot run, pip takes a minute.
 # Bytecode is made here, but for the packages' own tests: a hundred jobs import the same packages, and
-# may not be allowed to keep it. Files that are no modules of this Python are left out by compileall.
+# may not be allowed to keep it. A file that is not for this Python is no reason to stop.
 define environment
 $(PYTHON) -m venv $(1)
 $(1)/bin/python $(PIP) -r workflow/envs/installer-lock.txt && $(1)/bin/uv pip install --quiet --python $(1)/bin/python --require-hashes $(2) || $(1)/bin/python $(PIP) $(2)

@@ -38,6 +38,16 @@ def run(server, tmp_path):
     return run
 
 
+@pytest.fixture
+def copies(tmp_path, monkeypatch):
+    """Copy the modules of this repository for servers that start now."""
+    folder = tmp_path / "copies"
+    for package in fork_server.OWN:
+        shutil.copytree(ROOT / "src" / package, folder / package)
+    monkeypatch.setenv("PYTHONPATH", str(folder))
+    return folder
+
+
 def test_a_script_is_the_main_program(run, tmp_path):
     """With its own arguments, environment and folder of modules."""
     (tmp_path / "beside.py").write_text("VALUE = 'beside'")
@@ -72,29 +82,21 @@ def test_an_edited_script_is_imported_anew(run, tmp_path):
         run(f"import edited; assert edited.VALUE == {value}")
 
 
-def test_after_an_edit_modules_of_this_repository_are_imported_anew(run, tmp_path, monkeypatch):
+def test_after_an_edit_modules_of_this_repository_are_imported_anew(run, copies):
     """All of them, for others have imported what was edited; a module that is new counts, too."""
-    folder = tmp_path / "copies"
-    for package in fork_server.OWN:
-        shutil.copytree(ROOT / "src" / package, folder / package)
-    monkeypatch.setenv("PYTHONPATH", str(folder))
     checks, panels = "nonsmooth.checks", "reproduction.rendering.panels"
     with ForkServer() as other:
         run(f"import sys; assert {{'{checks}', '{panels}'}} <= set(sys.modules)", server=other)
-        with open(folder / "nonsmooth/checks.py", "a") as file:
+        with open(copies / "nonsmooth/checks.py", "a") as file:
             file.write("EDITED = True\n")
-        (folder / "nonsmooth/.#checks.py").symlink_to("nowhere")  # as some editors lock a file
+        (copies / "nonsmooth/.#checks.py").symlink_to("nowhere")  # as some editors lock a file
         run("from nonsmooth.checks import EDITED", server=other)
         run(f"import sys; assert '{panels}' not in sys.modules", server=other)
 
 
-def test_a_server_starts_though_a_module_is_broken(run, tmp_path, monkeypatch):
+def test_a_server_starts_though_a_module_is_broken(run, copies):
     """The job that imports it says so."""
-    folder = tmp_path / "copies"
-    for package in fork_server.OWN:
-        shutil.copytree(ROOT / "src" / package, folder / package)
-    (folder / "nonsmooth/checks.py").write_text("def half(")
-    monkeypatch.setenv("PYTHONPATH", str(folder))
+    (copies / "nonsmooth/checks.py").write_text("def half(")
     with ForkServer() as other:
         run("import numpy", server=other)
         with pytest.raises(subprocess.CalledProcessError):

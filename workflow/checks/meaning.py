@@ -7,7 +7,7 @@ from itertools import product
 from nonsmooth.errors import AssumptionWarning
 from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.noises import NOISES, Hamiltonian, Langevin
+from nonsmooth.scenes.noises import Hamiltonian, Langevin, named
 from nonsmooth.scenes.scene import Scene
 from reproduction.configuration.schema import shown
 from reproduction.errors import ConfigError, configured_by, dotted
@@ -63,7 +63,7 @@ def _scene(key, parameters):
         if isinstance(noise, dict):
             noise = (Hamiltonian if "H" in noise else Langevin)(**noise)
         else:
-            noise = NOISES[noise]()
+            noise = named(noise)
     with configured_by(*key, "potential"):
         Scene(model, noise, potential=parameters["potential"]).potential_expression  # noqa: B018
     with configured_by(*key, "observable"):

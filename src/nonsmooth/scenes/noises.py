@@ -6,6 +6,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
@@ -273,7 +274,6 @@ def KanaiTajimi(stiffness: float = 1.0, damping: float = 1.0, sigma: float = 1.0
     return Hamiltonian(H=f"{k!r}*eta**2/2 + zeta**2/2", F=f"{gamma!r}", sigma=sigma)
 
 
-# makers of the noises that have all parameters 1; what is not used is not derived
 NOISES: dict[str, Callable[..., Noise]] = {
     "white": White,
     "langevin": OrnsteinUhlenbeck,
@@ -284,3 +284,15 @@ NAMES: dict[str, Callable[..., Noise]] = NOISES | {
     "ornstein_uhlenbeck": NOISES["langevin"],
     "kanai_tajimi": NOISES["hamiltonian"],
 }
+
+
+@cache
+def named(name: str) -> Noise:
+    """Return the noise with all parameters 1, which is made when it is first asked for.
+
+    Parameters
+    ----------
+    name : str
+        One of `NAMES`.
+    """
+    return NAMES[name]()

@@ -113,7 +113,7 @@ class Scene:
         else:
             self._set("model", require_choice("model", self.model, MODELS))
         if isinstance(self.noise, str):
-            self._set("noise", noises.NAMES[require_choice("noise", self.noise, noises.NAMES)]())
+            self._set("noise", noises.named(require_choice("noise", self.noise, noises.NAMES)))
         if isinstance(self.noise, type) or not isinstance(self.noise, noises.Noise):
             raise SceneError(
                 f"noise is {quoted(self.noise)}; choose from {', '.join(noises.NAMES)}, or give a "

@@ -19,7 +19,7 @@ import sympy
 from nonsmooth.errors import SceneError
 from nonsmooth.scenes import equations
 from nonsmooth.scenes.formulas import vectorised
-from nonsmooth.scenes.noises import NOISES
+from nonsmooth.scenes.noises import named
 from nonsmooth.scenes.penalties import n as penalization
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import STATE_VARIABLES, eta, x, y, zeta
@@ -77,7 +77,7 @@ def function(kind: str, confined: bool = True) -> sympy.Expr:
 
 def generator(psi: sympy.Expr, kind: str) -> sympy.Expr:
     """Return A_n psi of eq. (9) of the paper, with the drift of Table 2."""
-    noise = NOISES[kind]()
+    noise = named(kind)
     transport = sum(f * sympy.diff(psi, s) for s, f in equations.drift(noise).items())
     return sympy.diff(psi, noise.driven, 2) / 2 + transport
 

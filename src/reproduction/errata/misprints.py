@@ -4,7 +4,7 @@ import numpy as np
 import sympy
 
 from nonsmooth.scenes import equations
-from nonsmooth.scenes.noises import NOISES, KanaiTajimi, hamiltonian_drift
+from nonsmooth.scenes.noises import KanaiTajimi, hamiltonian_drift, named
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.scenes.symbols import eta, zeta
 from nonsmooth.theory import lyapunov
@@ -19,7 +19,7 @@ from reproduction.errata.record import Evidence, erratum
 )
 def misprinted_derivative():
     """Apply both to the constant 1, which a generator maps to 0, with psi_eta = 1."""
-    drift = NOISES["langevin"]().drift[eta]
+    drift = named("langevin").drift[eta]
     mended = lyapunov.generator(sympy.Integer(1), "langevin")
     printed = mended + drift * 1
     quantity = r"$A_{n,3} 1$ at $\eta = 2$, $\psi_\eta = 1$"

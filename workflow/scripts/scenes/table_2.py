@@ -4,7 +4,7 @@ import pandas as pd
 import sympy
 
 from nonsmooth.scenes import equations
-from nonsmooth.scenes.noises import NOISES
+from nonsmooth.scenes.noises import NOISES, named
 from reproduction.rendering.tables import typeset
 
 
@@ -16,7 +16,7 @@ def state_equations():
     plain, cells : pandas.DataFrame
     """
     plain, cells = [], []
-    for noise in (make() for make in NOISES.values()):
+    for noise in map(named, NOISES):
         drift, sigma = equations.drift(noise), equations.diffusion(noise)
         state = sympy.latex(sympy.Matrix(list(drift)))
         plain += [

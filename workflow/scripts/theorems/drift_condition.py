@@ -5,7 +5,7 @@ import warnings
 from dataclasses import asdict
 
 from nonsmooth.errors import AssumptionWarning
-from nonsmooth.scenes.noises import NOISES, Langevin
+from nonsmooth.scenes.noises import Langevin, named
 from nonsmooth.scenes.scene import Scene
 from nonsmooth.theory.drift_condition import margins
 from reproduction.errors import CheckError
@@ -46,9 +46,9 @@ def search(potentials, langevin, damping, n, points, reach):
     CheckError
         If an inequality fails by more than rounding, other than Claim 10 of the paper as printed.
     """
-    forcings = {"white": [("", NOISES["white"]())]}
+    forcings = {"white": [("", named("white"))]}
     forcings["langevin"] = [(v, Langevin(v)) for v in langevin]
-    forcings["hamiltonian"] = [("", NOISES["hamiltonian"]())]
+    forcings["hamiltonian"] = [("", named("hamiltonian"))]
     cases, found = [], []
     for model, kind in itertools.product(potentials, forcings):
         for (v, noise), U, c, k in itertools.product(forcings[kind], potentials[model], damping, n):

@@ -77,7 +77,7 @@ class Strang(NamedTuple):
     (zeta, eta), or of one variable alone in the first entries. `spring` holds the coefficients of
     x and x^3 in U', if there is nothing else in it. `slope`, `first_drift`, `second_drift` and
     `formula` are addresses of U', of the noise's drifts and of g; 0 where they are not used, as
-    compiling the first one takes half a second. `control` holds the
+    compiling the first one takes a quarter of a second. `control` holds the
     coefficients of a polynomial in y / `reach`, the integrand of the control variate, which is
     used if `controlled`.
     """
