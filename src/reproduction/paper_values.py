@@ -146,8 +146,14 @@ def finite_p(contained: xr.Dataset, formulas: xr.Dataset, section: Mapping) -> d
     constants_error = max(float(formulas[f"{name}_error"]) for name in CONSTANTS)
     slopes = zip(formulas["slope"].values, formulas["slope_error"].values, strict=True)
     percent = {
-        name: decimal(100 * contained[name], 1) for name in ("expected", "spread", "least")
-    } | {"share": decimal(100 * contained["share"], 1, 100 * contained["spread"])}
+        name: decimal(100 * contained[name], 1, 100 * contained[error], kind)
+        for name, error, kind in (
+            ("share", "spread", STANDARD),
+            ("expected", "expected_standard_error", STANDARD),
+            ("spread", "spread_standard_error", STANDARD),
+            ("least", "least_half_interval", INTERVAL),
+        )
+    }
     return (
         {name: decimal(formulas[name], 8, formulas[f"{name}_error"], BOUND) for name in CONSTANTS}
         | {

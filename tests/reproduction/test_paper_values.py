@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from reproduction import paper_values
-from reproduction.rendering.quoted import BOUND, ERROR, ROUNDING, STANDARD, Quoted
+from reproduction.rendering.quoted import BOUND, ERROR, ROUNDING, STANDARD, Quoted, decimal
 
 
 def formulas():
@@ -37,6 +37,8 @@ def formulas():
 def corrected():
     """Spell the section on corrected formulas."""
     contained = dict.fromkeys(("share", "expected", "spread", "least"), 0.947)
+    contained |= {"expected_standard_error": 1e-4, "spread_standard_error": 1e-4}
+    contained |= {"least_half_interval": 2e-3}
     contained |= {"rarely": 1e-3, "outside": 1e-6, "standard_errors": ("p", [1.0, 2.0])}
     section = {
         "horizons": [1, 2],
@@ -55,6 +57,12 @@ def test_errors_are_quoted_where_exact_values_resolve_them(corrected):
     assert corrected["order_2_better"] == "10"
 
 
+def test_shares_have_errors_of_their_simulation(corrected):
+    """In percent: another machine draws other shares, by more than the digits shown."""
+    errors = {name: corrected[name].error for name in ("share", "expected", "spread", "least")}
+    assert errors == pytest.approx({"share": 94.7, "expected": 0.01, "spread": 0.01, "least": 0.2})
+
+
 def test_bounds_are_rounded_up(corrected):
     """1e-9 is below what is printed as its bound, also after rounding."""
     assert corrected["constants_error"].startswith("1.1 times")
@@ -64,10 +72,10 @@ def test_bounds_are_rounded_up(corrected):
 
 def test_numbers_know_their_errors(corrected):
     """The stated one; half a unit of the last digit where there is none; none for parameters."""
-    kappa, expected = corrected["kappa"], corrected["expected"]
+    kappa, rounded = corrected["kappa"], decimal(94.7234, 1)
     assert (kappa.value, kappa.error, kappa.kind) == (0.5, 1e-9, BOUND)
-    assert (expected.value, expected.kind) == (pytest.approx(94.7), ROUNDING)
-    assert expected.error == pytest.approx(0.05)
+    assert (rounded.value, rounded.kind) == (94.7234, ROUNDING)
+    assert rounded.error == pytest.approx(0.05)
     assert (corrected["share"].error, corrected["share"].kind) == (pytest.approx(94.7), STANDARD)
     assert not isinstance(corrected["tabulated"], Quoted)
     assert corrected["constants_error"].kind == ERROR

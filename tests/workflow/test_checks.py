@@ -321,10 +321,22 @@ def test_bands_around_the_curves_pass():
     result = containment(*bands())
     assert list(result["p"]) == [1.0, 10.0]
     assert float(result["share"]) == 1
-    # the mean of 10 000 replicates: six of its standard deviations, and the steps of the counts
-    allowed = 6 * float(result["spread"]) / 100 + 0.01
+    # the mean of 10 000 replicates: six of its standard errors, and the steps of the counts
+    allowed = 6 * float(result["expected_standard_error"]) + 0.01
     assert abs(float(result["expected"]) - 0.95) < allowed
     assert float(result["least"]) < 0.95
+
+
+def test_simulated_shares_state_their_errors():
+    """Between two seeds they differ by less than six standard errors, once in 10^8 by chance."""
+    one, other = (containment(*bands()[:2], seed) for seed in (1, 2))
+    for name, error, standard in (
+        ("expected", "expected_standard_error", 1.0),
+        ("spread", "spread_standard_error", 1.0),
+        ("least", "least_half_interval", 1.96),
+    ):
+        allowed = 6 / standard * np.hypot(one[error], other[error])
+        assert 0 < abs(one[name] - other[name]) < allowed
 
 
 def test_a_known_bias_is_allowed_for():

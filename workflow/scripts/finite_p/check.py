@@ -1,6 +1,7 @@
 """Check that the Monte Carlo bands of figure 2b contain the exact curves as often as stated."""
 
 import numpy as np
+from scipy import stats
 from scipy.special import ndtri
 
 from nonsmooth.crossing.proportions import proportion
@@ -85,9 +86,9 @@ def containment(monte_carlo, exact, seed):
             "distance": ("p", distance, "largest difference"),
             "standard_errors": ("p", standard_errors, "largest difference in standard errors"),
             "share": ((), share, "share of all p and T"),
-            "expected": ((), shares.mean(), "its expectation, with the bias of the time step"),
-            "spread": ((), shares.std(), "its standard deviation"),
+            **_moments(shares),
             "least": ((), least, "smallest share that is allowed"),
+            "least_half_interval": ((), _half_interval(shares), "half its 95 % interval"),
             "rarely": ((), RARELY, "probability of a smaller share by chance"),
             "outside": ((), OUTSIDE, "probability that a simultaneous band misses by chance"),
         },
@@ -103,6 +104,28 @@ def _shares(truth, bias, paths, seed):
     counts = random.multinomial(paths, cells, size=REPLICATES)[:, :-1].cumsum(axis=1)
     inside = (lowest[counts] <= truth) & (truth <= highest[counts])
     return inside.mean(axis=1)
+
+
+def _moments(shares):
+    """Mean and standard deviation of simulated shares, and the standard errors of both."""
+    mean, spread, many = shares.mean(), shares.std(), len(shares)
+    squares = (shares - mean) ** 2
+    return {
+        "expected": ((), mean, "its expectation, with the bias of the time step"),
+        "expected_standard_error": ((), spread / np.sqrt(many), "of the expectation"),
+        "spread": ((), spread, "its standard deviation"),
+        "spread_standard_error": (
+            (),
+            squares.std() / (2 * spread * np.sqrt(many)),
+            "of the standard deviation",
+        ),
+    }
+
+
+def _half_interval(shares):
+    """Half a 95 % interval, of order statistics, of the quantile that is rarely undercut."""
+    interval = stats.quantile_test(shares, p=RARELY).confidence_interval()
+    return (interval.high - interval.low) / 2
 
 
 if __name__ == "__main__":
