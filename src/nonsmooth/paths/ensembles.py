@@ -60,6 +60,7 @@ def gram(
     grid = [(parts * steps, h / parts) for steps, h in equal_steps(times, sampling.step)]
     require_memory(25 * len(grid) * kept_at_once(sampling))
     coefficients = _coefficients(scene, grid, sampling, control)
+    joined = registry.scheme(scene, sampling.scheme).gains_in_kicks(scene)
 
     def run(job):
         block, count = job
@@ -67,7 +68,7 @@ def gram(
         sums, first = np.zeros((len(grid), 5, 5)), 0
         for (steps, h), alike in groupby(grid):
             last = first + len(list(alike))
-            march_and_sum(coefficients[h], panel, count, steps, sums[first:last])
+            march_and_sum(coefficients[h], panel, count, steps, sums[first:last], joined)
             first = last
         return sums
 
@@ -266,19 +267,22 @@ def coupled(
     change : numpy.ndarray, shape (t, 4, 4)
         Sums over the paths of the products of (1, D_h - D_h/2, D_h^2 - D_h/2^2, D_h/2).
     passage : numpy.ndarray, shape (2, paths)
-        First-passage times with step h/2 and h, inf if there is none.
+        First-passage times with step h/2 and h, inf if there is none; of no paths if both levels
+        are infinite.
     """
     grid, pairs = compiled_pairs(scene, times, sampling)
+    followed = tuple(levels) != EVERYWHERE
+    joined = registry.scheme(scene, sampling.scheme).gains_in_kicks(scene)
 
     def run(job):
         block, count = job
         panel, other = (_new_panel(scene, sampling, block) for _ in range(2))
-        passage = np.full((2, count), np.inf)
+        passage = np.full((2, count if followed else 0), np.inf)
         sums, first, began = np.zeros((len(grid), 4, 4)), 0, 0.0
         for (steps, h), alike in groupby(grid):
             last = first + len(list(alike))
             both = (*pairs[h], panel, other, count, steps, levels)
-            march_pair_and_sum(*both, began, steps * h, passage, sums[first:last])
+            march_pair_and_sum(*both, began, steps * h, passage, sums[first:last], joined)
             began += (last - first) * steps * h
             first = last
         return sums, passage
@@ -317,7 +321,7 @@ def coupled_crossings(
         sums, began = np.zeros((len(grid), 4, 4)), 0.0
         for time, (steps, h), own in zip(np.asarray(times), grid, sums, strict=True):
             both = (*pairs[h], *panels, count, steps, EVERYWHERE)
-            march_pair_and_sum(*both, began, steps * h, untimed, own[None])
+            march_pair_and_sum(*both, began, steps * h, untimed, own[None], joined=False)
             began += steps * h
             for panel, found in zip(panels, passage, strict=True):
                 low, high = extremes(panel, count, symmetric=False)

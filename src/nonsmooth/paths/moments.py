@@ -6,8 +6,6 @@ from numpy.typing import ArrayLike
 from nonsmooth.errors import SceneError
 from nonsmooth.paths import tuning
 
-_MOMENTS = ("mean", "mean_error", "variance", "variance_error")
-
 
 def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
     """Mean and variance of D = int_0^t g and their standard errors.
@@ -42,25 +40,26 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
         )
     average = gram[:, 0] / paths[:, None]
     covariance = gram / paths[:, None, None] - average[:, :, None] * average[:, None, :]
-    result = {name: np.empty(len(gram)) for name in _MOMENTS}
-    for k, (a, c, count) in enumerate(zip(average, covariance, paths, strict=True)):
-        if count < 2 or np.any(
-            np.diag(c)[1:3] < tuning.MONTE_CARLO.resolved * gram[k].diagonal()[1:3] / count
-        ):
-            raise SceneError(
-                "the spread of int g is lost in its mean, or there is one path only; "
-                "subtract the mean from g or take more paths"
-            )
-        plain = c[1, 1] * count / (count - 1)
-        # To first order in the fluctuations the sample variance is the mean of D^2 - 2 E[D] D.
-        for name, value, weights in (
-            ("mean", a[1], np.array([0, 1, 0, 0, 0])),
-            ("variance", plain, np.array([0, -2 * a[1], 1, 0, 0])),
-        ):
-            slope = np.linalg.pinv(c[3:, 3:], hermitian=True) @ (c[3:] @ weights)
-            weights = weights - np.concatenate([np.zeros(3), slope])
-            result[name][k] = value - slope @ a[3:]
-            result[f"{name}_error"][k] = np.sqrt(max(weights @ c @ weights, 0.0) / count)
+    spread, squares = (np.diagonal(part, axis1=1, axis2=2)[:, 1:3] for part in (covariance, gram))
+    if np.any(paths < 2) or np.any(spread < tuning.MONTE_CARLO.resolved * squares / paths[:, None]):
+        raise SceneError(
+            "the spread of int g is lost in its mean, or there is one path only; "
+            "subtract the mean from g or take more paths"
+        )
+    # To first order in the fluctuations the sample variance is the mean of D^2 - 2 E[D] D.
+    of_mean = np.tile([0.0, 1.0, 0.0, 0.0, 0.0], (len(gram), 1))
+    of_variance = np.stack([0 * paths, -2 * average[:, 1], 1 + 0 * paths, 0 * paths, 0 * paths], 1)
+    inverse = np.linalg.pinv(covariance[:, 3:, 3:], hermitian=True)
+    result = {}
+    for name, value, weights in (
+        ("mean", average[:, 1], of_mean),
+        ("variance", spread[:, 0] * paths / (paths - 1), of_variance),
+    ):
+        slope = np.einsum("tij,tjk,tk->ti", inverse, covariance[:, 3:], weights)
+        weights[:, 3:] -= slope
+        error = np.einsum("ti,tij,tj->t", weights, covariance, weights)
+        result[name] = value - np.sum(slope * average[:, 3:], axis=1)
+        result[f"{name}_error"] = np.sqrt(np.maximum(error, 0.0) / paths)
     # what the control variates take off may be more than there is
     result["variance"] = np.maximum(result["variance"], 0.0)
     first = int(np.argmax(moved))

@@ -40,8 +40,9 @@ from nonsmooth.paths.parallel import count
 from nonsmooth.paths.schemes import registry
 
 EVERYWHERE = (-np.inf, np.inf)  # levels that no path reaches
-_TOGETHER = 8  # lanes whose sums are gathered side by side, so that they vectorise
+_ABREAST = WIDTH // 9  # lanes whose sums are kept side by side, so that they vectorise
 _NO_SUMS, _NO_CHANGES = np.empty((0, 5, 5)), np.empty((0, 4, 4))
+_APART = np.ones((1, 2), dtype=bool)  # the ends of an interval that begins and ends with half-flows
 
 
 @intrinsic
@@ -107,12 +108,15 @@ def march(s: Any, panel: Panel, lanes: int, steps: int, lower: float, upper: flo
         Number of paths left, in the first lanes.
     """
     for first, last in pieces(steps + 1):
-        lanes = _march(s, panel, lanes, first, last, steps, lower, upper, _NO_SUMS)
+        course = first, last, steps
+        lanes = _march(s, panel, lanes, course, lower, upper, _NO_SUMS, _APART)
         count(last - first)
     return lanes
 
 
-def march_and_sum(s: Any, panel: Panel, lanes: int, steps: int, sums: np.ndarray) -> None:
+def march_and_sum(
+    s: Any, panel: Panel, lanes: int, steps: int, sums: np.ndarray, joined: bool
+) -> None:
     """Advance the paths of a panel through intervals of equal length; sum up at the end of each.
 
     Parameters
@@ -126,15 +130,28 @@ def march_and_sum(s: Any, panel: Panel, lanes: int, steps: int, sums: np.ndarray
         Of each interval.
     sums : array, shape (intervals, 5, 5)
         To which the products of (1, D, D^2, M, M^2 - <M>) of all paths are added.
+    joined : bool
+        Whether the half-flows on both sides of an output time may be one flow, which is faster:
+        int g must be complete after a kick.
     """
     if steps > FLUSH:  # long enough for Python not to matter, and to be stopped within
         for own in sums:
             march(s, panel, lanes, steps, *EVERYWHERE)
-            _march(s, panel, lanes, 0, 0, 0, *EVERYWHERE, own[None])
+            _march(s, panel, lanes, (0, 0, 0), *EVERYWHERE, own[None], _APART)
         return
+    ends, course = _ends(len(sums), joined), (0, steps + 1, steps)
     for first, last in pieces(len(sums)):
-        _march(s, panel, lanes, 0, steps + 1, steps, *EVERYWHERE, sums[first:last])
+        some = slice(first, last)
+        _march(s, panel, lanes, course, *EVERYWHERE, sums[some], ends[some])
         count((last - first) * steps)
+
+
+def _ends(intervals, joined):
+    """Tell for each interval whether it begins and whether it ends with a half-flow."""
+    ends = np.ones((intervals, 2), dtype=bool)
+    if joined:
+        ends[1:, 0] = ends[:-1, 1] = False
+    return ends
 
 
 def compile_march(s: Any, panel: Panel) -> None:
@@ -158,24 +175,28 @@ def pieces(steps: int) -> Iterator[tuple[int, int]]:
 
 
 @kernel
-def _march(s, panel, lanes, first, last, steps, lower, upper, sums):
+def _march(s, panel, lanes, course, lower, upper, sums, ends):
     """Advance the paths of a panel by the steps from `first` up to `last`.
 
     If sums are wanted, do so as often as there are, and add to the next ones each time.
     """
-    words, data, total = of_known_shape(panel)
+    arrays = of_known_shape(panel)
+    total = arrays[2]
     for interval in range(max(len(sums), 1)):
-        lanes = _advance(s, words, data, total, lanes, first, last, steps, lower, upper)
+        lanes = _advance(s, arrays, panel.left, lanes, course, ends[interval], lower, upper)
         if len(sums) > 0:
-            _add_products(total, lanes, sums[interval])
+            _add_products(_moments, total, total, lanes, sums[interval])
     return lanes
 
 
 @merged
-def _advance(s, words, data, total, lanes, first, last, steps, lower, upper):
-    normal = 2
+def _advance(s, arrays, left, lanes, course, ends, lower, upper):
+    words, data, total = arrays
+    first, last, steps = course
+    last -= not ends[1]
+    normal = 2 - left[0]
     for k in range(first, last):
-        mechanical_flow(s, data, k == 0, k == steps, lanes)
+        mechanical_flow(s, data, ends[0] and k == 0, k == steps, lanes)
         if k == steps:
             observe(data, lanes)  # what the last flow has added to int g
         else:
@@ -188,58 +209,73 @@ def _advance(s, words, data, total, lanes, first, last, steps, lower, upper):
             normal += s.normals
         if lower != -upper:  # for levels -b and b, max |int g| is enough, which is kept anyway
             follow_extremes(data, lanes)
-        if (k + 1) % FLUSH == 0 or k == steps:
+        if (k + 1) % FLUSH == 0 or k + 1 == last:
             flush(data, total, lanes)
             if lower > -np.inf or upper < np.inf:
                 lanes = retire(words, data, total, lanes, lower, upper)
+    left[0] = max(2 - normal, 0)
     return lanes
 
 
 @inlined
-def _add_products(total, lanes, sums):
-    """Add the products of (1, D, D^2, M, M^2 - <M>), summed over the lanes."""
-    partial = np.zeros((15, _TOGETHER))
-    for begin in range(0, lanes, _TOGETHER):
-        for j in range(min(_TOGETHER, lanes - begin)):
-            d, m = total[TOTAL_DELTA, begin + j], total[TOTAL_MARTINGALE, begin + j]
-            rest = m * m - total[TOTAL_VARIATION, begin + j]
-            _gather(partial, j, (1.0, d, d * d, m, rest))
-    _add_symmetric(partial, sums)
+def _moments(total, other, lane):
+    """Return D, D^2, M and M^2 - <M> of a path."""
+    d, m = total[TOTAL_DELTA, lane], total[TOTAL_MARTINGALE, lane]
+    return d, d * d, m, fma(m, m, -total[TOTAL_VARIATION, lane])
 
 
 @inlined
-def _add_changes(total, other, lanes, sums):
-    """Add the products of (1, D' - D, D'^2 - D^2, D), summed over the lanes; D' is the other's."""
-    partial = np.zeros((10, _TOGETHER))
-    for begin in range(0, lanes, _TOGETHER):
-        for j in range(min(_TOGETHER, lanes - begin)):
-            d, after = total[TOTAL_DELTA, begin + j], other[TOTAL_DELTA, begin + j]
-            _gather(partial, j, (1.0, after - d, after * after - d * d, d))
-    _add_symmetric(partial, sums)
+def _changes(total, other, lane):
+    """Return D' - D, D'^2 - D^2 and D of a path, D' the other's, and 0."""
+    d, after = total[TOTAL_DELTA, lane], other[TOTAL_DELTA, lane]
+    return after - d, after * after - d * d, d, 0.0
 
 
 @inlined
-def _gather(partial, j, values):
-    """Add the products of some values, by rows of the upper triangle, to a partial sum."""
+def _add_products(values, total, other, lanes, sums):
+    """Add the products of 1 and the four values of a path, or as many as wanted, over all paths.
+
+    The lanes without a path have zeros in them.
+    """
+    partial = numba.carray(pointer(np.empty((14, _ABREAST)).ctypes), (14, _ABREAST))
+    for j in range(_ABREAST):
+        a = b = c = d = aa = ab = ac = ad = bb = bc = bd = cc = cd = dd = 0.0
+        for begin in range(0, WIDTH, _ABREAST):
+            p, q, r, t = values(total, other, begin + j)
+            a, b, c, d = a + p, b + q, c + r, d + t
+            aa, ab, ac, ad = fma(p, p, aa), fma(p, q, ab), fma(p, r, ac), fma(p, t, ad)
+            bb, bc, bd = fma(q, q, bb), fma(q, r, bc), fma(q, t, bd)
+            cc, cd, dd = fma(r, r, cc), fma(r, t, cd), fma(t, t, dd)
+        partial[0, j], partial[1, j], partial[2, j], partial[3, j] = a, b, c, d
+        partial[4, j], partial[5, j], partial[6, j], partial[7, j] = aa, ab, ac, ad
+        partial[8, j], partial[9, j], partial[10, j] = bb, bc, bd
+        partial[11, j], partial[12, j], partial[13, j] = cc, cd, dd
+    left = _ABREAST
+    while left % 2 == 0:
+        left //= 2
+        for k in range(14):
+            for j in range(left):
+                partial[k, j] += partial[k, left + j]
+    _add_symmetric(partial, lanes, left, sums)
+
+
+@inlined
+def _add_symmetric(partial, lanes, left, sums):
+    """Add to a matrix what is left to sum of its upper triangle, row by row after the first entry.
+
+    The matrix may be smaller, without the last rows and columns.
+    """
+    sums[0, 0] += lanes
     k = 0
-    for a in range(len(values)):
-        for b in range(a, len(values)):
-            partial[k, j] += values[a] * values[b]
-            k += 1
-
-
-@inlined
-def _add_symmetric(partial, sums):
-    """Add a matrix given by the rows of its upper triangle, each divided into partial sums."""
-    k = 0
-    for i in range(len(sums)):
-        for j in range(i, len(sums)):
-            value = 0.0
-            for part in partial[k]:
-                value += part
-            sums[i, j] += value
-            if i != j:
-                sums[j, i] += value
+    for i in range(5):
+        for j in range(max(i, 1), 5):
+            if j < len(sums):
+                value = 0.0
+                for part in range(left):
+                    value += partial[k, part]
+                sums[i, j] += value
+                if i != j:
+                    sums[j, i] += value
             k += 1
 
 
@@ -274,12 +310,13 @@ def march_pair(
         Time of the first step.
     passage : array, shape (2, l)
         Times at which int g first reaches one of the levels, of the fine and of the coarse paths,
-        interpolated within a step; inf before.
+        interpolated within a step; inf before. With l = 0 neither these nor the extremes of int g
+        are followed.
     """
     levels = lower, upper
     for first, last in pieces(2 * steps + 1):
         pair = fine, coarse, panel, other, lanes, first, last, steps
-        _march_pair(*pair, *levels, began, 0.0, passage, _NO_CHANGES)
+        _march_pair(*pair, *levels, began, 0.0, passage, _NO_CHANGES, _APART)
         count(last - first)
 
 
@@ -295,6 +332,7 @@ def march_pair_and_sum(
     span: float,
     passage: np.ndarray,
     sums: np.ndarray,
+    joined: bool,
 ) -> None:
     """Advance two panels through intervals of equal length; sum up at the end of each.
 
@@ -309,23 +347,41 @@ def march_pair_and_sum(
         Length of an interval.
     sums : array, shape (intervals, 4, 4)
         To which the products of (1, D_h - D_h/2, D_h^2 - D_h/2^2, D_h/2) of all paths are added.
+    joined : bool
+        As for `march_and_sum`.
     """
     if steps > FLUSH:
         for k, own in enumerate(sums):
             at = began + k * span
             march_pair(fine, coarse, panel, other, lanes, steps, *levels, at, passage)
             pair = fine, coarse, panel, other, lanes, 0, 0, 0
-            _march_pair(*pair, *levels, at, span, passage, own[None])
+            _march_pair(*pair, *levels, at, span, passage, own[None], _APART)
         return
+    ends = _ends(len(sums), joined)
     for first, last in pieces(len(sums)):
         pair = fine, coarse, panel, other, lanes, 0, 2 * steps + 1, steps
-        _march_pair(*pair, *levels, began + first * span, span, passage, sums[first:last])
+        some, at = slice(first, last), began + first * span
+        _march_pair(*pair, *levels, at, span, passage, sums[some], ends[some])
         count((last - first) * 2 * steps)
 
 
 @kernel
 def _march_pair(
-    fine, coarse, panel, other, lanes, first, last, steps, lower, upper, began, span, passage, sums
+    fine,
+    coarse,
+    panel,
+    other,
+    lanes,
+    first,
+    last,
+    steps,
+    lower,
+    upper,
+    began,
+    span,
+    passage,
+    sums,
+    ends,
 ):
     """Advance two panels by the fine steps from `first` up to `last`.
 
@@ -336,35 +392,41 @@ def _march_pair(
     arrays = words, data, total, joined, other_total
     for interval in range(max(len(sums), 1)):
         now = began + interval * span
-        _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper, now, passage)
+        begins, stops = ends[interval]
+        course = first, last if stops else last - 1, steps, begins
+        _advance_pair(fine, coarse, arrays, lanes, course, lower, upper, now, passage)
         if len(sums) > 0:
-            _add_changes(total, other_total, lanes, sums[interval])
+            _add_products(_changes, total, other_total, lanes, sums[interval])
 
 
 @merged
-def _advance_pair(fine, coarse, arrays, lanes, first, last, steps, lower, upper, began, passage):
+def _advance_pair(fine, coarse, arrays, lanes, course, lower, upper, began, passage):
     words, data, total, joined, other_total = arrays
+    first, last, steps, begins = course
+    followed = passage.shape[1] > 0
     for k in range(first, last):  # counts the fine steps
         odd = k % 2 == 1
         now = began + (k // 2) * float(coarse.step)
-        flow_of_pair(fine, coarse, data, joined, k, steps, lanes)
+        flow_of_pair(fine, coarse, data, joined, k, 2 * steps, begins, lanes)
         if k < 2 * steps:
             normal = draw(fine, words, data, odd, lanes)
             join_noise(fine, data, joined, normal, odd, lanes)
             noise_kick(fine, data, normal, lanes)
-            start = now + fine.step if odd else now
-            _note_passage(data, passage[0], lanes, lower, upper, start, fine.step)
             if odd:
                 noise_kick(coarse, joined, 0, lanes)
-                _note_passage(joined, passage[1], lanes, lower, upper, now, coarse.step)
-        if (k + 1) % FLUSH == 0 or k == 2 * steps:
+            if followed:
+                start = now + fine.step if odd else now
+                _note_passage(data, passage[0], lanes, lower, upper, start, fine.step)
+                if odd:
+                    _note_passage(joined, passage[1], lanes, lower, upper, now, coarse.step)
+        if (k + 1) % FLUSH == 0 or k + 1 == last:
             flush(data, total, lanes)
             flush(joined, other_total, lanes)
 
 
 @merged
-def flow_of_pair(fine, coarse, data, joined, k, steps, lanes):
-    """Let two panels flow for what is due at the k-th fine step; at the end int g is completed.
+def flow_of_pair(fine, coarse, data, joined, k, last, begins, lanes):
+    """Let two panels flow for what is due at the k-th fine step; at the last int g is completed.
 
     Parameters
     ----------
@@ -372,14 +434,16 @@ def flow_of_pair(fine, coarse, data, joined, k, steps, lanes):
         Coefficients of the fine and of the coarse step.
     data, joined : array
         Of the fine and of the coarse paths.
-    k, steps : int
-        The fine step, from 0 to 2 `steps`.
+    k, last : int
+    begins : bool
+        Whether the flow at k = 0 is a half-flow.
     lanes : int
     """
-    mechanical_flow(fine, data, k == 0, k == 2 * steps, lanes)
+    begins = begins and k == 0
+    mechanical_flow(fine, data, begins, k == last, lanes)
     if k % 2 == 0:
-        mechanical_flow(coarse, joined, k == 0, k == 2 * steps, lanes)
-    if k == 2 * steps:
+        mechanical_flow(coarse, joined, begins, k == last, lanes)
+    if k == last:
         observe(data, lanes)
         observe(joined, lanes)
 

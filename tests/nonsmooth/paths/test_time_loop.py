@@ -38,13 +38,14 @@ def test_halved_steps_run_on_the_same_path(noise):
     assert np.allclose(*noises, rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("joined", [False, True])
 @pytest.mark.parametrize("steps", [5, FLUSH + 1])
-def test_sums_are_those_of_the_paths(steps):
+def test_sums_are_those_of_the_paths(steps, joined):
     """Short intervals in one kernel and long ones of their own give the paths' products."""
     s = coefficients(FRICTION, "strang", 0.1, "float64")
     panels = [new_panel(FRICTION, 1, 0, "float64") for _ in range(2)]
     sums = np.zeros((3, 5, 5))
-    march_and_sum(s, panels[0], LANES, steps, sums)
+    march_and_sum(s, panels[0], LANES, steps, sums, joined)
     for found in sums:
         march(s, panels[1], LANES, steps, *EVERYWHERE)
         delta, martingale, variation = panels[1].total[:, :LANES]
@@ -52,19 +53,22 @@ def test_sums_are_those_of_the_paths(steps):
         assert np.all(np.abs(found - expected) <= ROUNDING * size)
 
 
+@pytest.mark.parametrize("joined", [False, True])
 @pytest.mark.parametrize("steps", [5, FLUSH + 1])
-def test_sums_of_changes_are_those_of_the_pairs(steps):
+def test_sums_of_changes_are_those_of_the_pairs(steps, joined):
     """So do pairs of paths, and their passages are timed the same."""
     fine, coarse = (coefficients(FRICTION, "strang", h, "float64") for h in (0.1, 0.2))
     pair, levels, span = (fine, on_given_increments(coarse)), (-0.5, 0.5), 0.2 * steps
     panels = [new_panel(FRICTION, 1, 0, "float64") for _ in range(4)]
     passages = [np.full((2, LANES), np.inf) for _ in range(2)]
     sums = np.zeros((3, 4, 4))
-    march_pair_and_sum(*pair, *panels[:2], LANES, steps, levels, 0.0, span, passages[0], sums)
+    march_pair_and_sum(
+        *pair, *panels[:2], LANES, steps, levels, 0.0, span, passages[0], sums, joined
+    )
     for k, found in enumerate(sums):
         march_pair(*pair, *panels[2:], LANES, steps, *levels, k * span, passages[1])
         half, whole = (panel.total[TOTAL_DELTA, :LANES] for panel in panels[2:])
         expected, size = products(whole - half, whole**2 - half**2, half)
         assert np.all(np.abs(found - expected) <= ROUNDING * size + ROUNDING)
-    assert np.array_equal(*passages)
+    assert np.allclose(*passages, rtol=0, atol=1e-12)
     assert np.any(np.isfinite(passages[0]))

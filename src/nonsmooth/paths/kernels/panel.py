@@ -46,11 +46,14 @@ class Panel(NamedTuple):
         The generators' states.
     data : float32 or float64 (ROWS, WIDTH)
     total : float64 (3, WIDTH)
+    left : int64 (1,)
+        How many normal numbers in the first two rows of `data` have not been used.
     """
 
     words: np.ndarray
     data: np.ndarray
     total: np.ndarray
+    left: np.ndarray
 
 
 def new_panel(scene: Scene, seed: int | tuple, block: int, precision: str = "float32") -> Panel:
@@ -68,7 +71,7 @@ def new_panel(scene: Scene, seed: int | tuple, block: int, precision: str = "flo
         data[row] = scene.start.get(symbol.name, 0.0)
     words = _aligned(4, "uint32")
     words[:, :BLOCK] = generator_words(scene, seed, block)
-    return Panel(words, data, _aligned(3, "float64"))
+    return Panel(words, data, _aligned(3, "float64"), np.zeros(1, dtype=np.int64))
 
 
 def _aligned(rows, kind):

@@ -83,11 +83,11 @@ def coefficients(
     if control is None or "control" not in s._fields:
         return s
     number = type(s.step)
-    polynomial = control.polynomial(float(s.factor[0]))
+    below, above = control.polynomials(float(s.factor[0]))
     return s._replace(
         controlled=True,
         reach=number(control.reach),
-        control=tuple(map(number, polynomial)),
+        control=(tuple(map(number, below)), tuple(map(number, above))),
     )
 
 

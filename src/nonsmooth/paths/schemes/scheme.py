@@ -46,6 +46,10 @@ def _every(scene):
     return True
 
 
+def _none(scene):
+    return False
+
+
 @dataclass(frozen=True, eq=False)
 class Scheme:
     """A time-stepping scheme: its step, as two compiled kernels, and what it promises.
@@ -88,6 +92,9 @@ class Scheme:
         Scene -> step below which the scheme is stable, inf if it is at every step.
     handles : callable
         Scene -> whether the scheme can simulate it.
+    gains_in_kicks : callable
+        Scene -> whether flows add nothing to int g, so that it is complete after a kick. Half-flows
+        on both sides of an output time are then one flow, which is faster.
     shares_noise : bool
         Whether `transition` and `factor` join the increments of two steps. If not, the bias of the
         step is measured with independent paths, which takes many more of them.
@@ -102,6 +109,7 @@ class Scheme:
     kink_order: float
     longest_step: Callable[[Scene], float] = _unlimited
     handles: Callable[[Scene], bool] = _every
+    gains_in_kicks: Callable[[Scene], bool] = _none
     shares_noise: bool = True
 
     def weak_order(self, scene: Scene) -> float:

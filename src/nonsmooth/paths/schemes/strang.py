@@ -35,7 +35,7 @@ from nonsmooth.paths.control_variate import DEGREE
 from nonsmooth.paths.kernels import exact_flows
 from nonsmooth.paths.kernels.compilation import inlined
 from nonsmooth.paths.kernels.compiled_formulas import compiled, evaluate
-from nonsmooth.paths.kernels.instructions import fma, larger, like, maximum, minimum
+from nonsmooth.paths.kernels.instructions import fma, larger, like, minimum, where
 from nonsmooth.paths.kernels.panel import (
     BASE,
     DELTA,
@@ -78,8 +78,8 @@ class Strang(NamedTuple):
     x and x^3 in U', if there is nothing else in it. `slope`, `first_drift`, `second_drift` and
     `formula` are addresses of U', of the noise's drifts and of g; 0 where they are not used, as
     compiling the first one takes a quarter of a second. `control` holds the
-    coefficients of a polynomial in y / `reach`, the integrand of the control variate, which is
-    used if `controlled`.
+    coefficients of polynomials in |y| / `reach` for y < 0 and for y >= 0, the integrand of the
+    control variate, which is used if `controlled`.
     """
 
     step: float
@@ -170,7 +170,7 @@ def coefficients(scene: Scene, step: float, precision: str = "float32") -> Stran
         formula=formula(scene.observable_expression, observable == _FORMULA),
         controlled=False,
         reach=number(1.0),
-        control=(number(0),) * (DEGREE + 1),
+        control=((number(0),) * (DEGREE + 1),) * 2,
     )
 
 
@@ -214,6 +214,11 @@ def longest_step(scene: Scene) -> float:
         entries = [vectorised(entry, variables)(*place) for entry in jacobian]
         limit = min(limit, tuning.STABLE_STEP.runge_kutta / np.max(np.linalg.norm(entries, axis=0)))
     return limit
+
+
+def gains_in_kicks(scene: Scene) -> bool:
+    """Whether g is not the penalty force, whose integral is taken over the flows."""
+    return not scene.observes_penalty_force
 
 
 def _is_linear(equations):
@@ -410,14 +415,17 @@ def _gather_martingale(s, data, normal, lanes):
     To first order only, it would leave an error of the order of the square root of the step.
     """
     one, two = like(s.reach, 1.0), like(s.reach, 2.0)
+    below, above = s.control
     for i in range(lanes):
-        place = minimum(maximum(data[Y, i] / s.reach, -one), one)
-        value, slope = s.control[DEGREE], like(one, 0.0)
+        negative = data[Y, i] < like(one, 0.0)
+        place = minimum(abs(data[Y, i]) / s.reach, one)
+        value, slope = where(negative, below[DEGREE], above[DEGREE]), like(one, 0.0)
         for k in range(DEGREE):
             slope = fma(slope, place, value)
-            value = fma(value, place, s.control[DEGREE - 1 - k])
+            other = DEGREE - 1 - k
+            value = fma(value, place, where(negative, below[other], above[other]))
         first = s.factor[0] * value
-        second = s.factor[0] * s.factor[0] / (two * s.reach) * slope
+        second = s.factor[0] * s.factor[0] / (two * s.reach) * where(negative, -slope, slope)
         kick = data[normal, i]
         data[MARTINGALE, i] += fma(first, kick, second * fma(kick, kick, -one))
         data[VARIATION, i] += fma(first, first, two * second * second)
@@ -505,4 +513,5 @@ STRANG = Scheme(
     kink_order=1.5,
     longest_step=longest_step,
     handles=handles,
+    gains_in_kicks=gains_in_kicks,
 )

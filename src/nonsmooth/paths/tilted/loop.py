@@ -185,7 +185,7 @@ def _march_pair(
     memory = numba.carray(pointer(memory.ctypes), (_ROWS, WIDTH))
     for k in range(first, last):  # counts the fine steps
         odd = k % 2 == 1
-        flow_of_pair(fine, coarse, data, joined, k, steps, lanes)
+        flow_of_pair(fine, coarse, data, joined, k, 2 * steps, True, lanes)
         if k < 2 * steps:
             normal = draw(fine, words, data, odd, lanes)
             if _is_due(tilt, k, fine.step):
