@@ -90,5 +90,5 @@ def _keep(panels: list[Panel], lanes: np.ndarray) -> None:
     """Move the chosen lanes of panels to the front."""
     count, kept = len(lanes), np.count_nonzero(lanes)
     for panel in panels:
-        for rows in panel:
+        for rows in (panel.words, panel.data, panel.total):
             rows[:, :kept] = rows[:, :count][:, lanes]

@@ -76,7 +76,8 @@ def fitted(scene: Scene, step: float, seed: int | tuple) -> Guide:
             for _ in range(count):
                 slope = values()[lower] * times[:, None]
                 march(s, panel, BLOCK, 1, *EVERYWHERE)
-                martingale += factor * slope * panel.data[0, :BLOCK]
+                used_up = s.normals == 1 and panel.left[0] == 0
+                martingale += factor * slope * panel.data[1 if used_up else 0, :BLOCK]
                 advance(1)
             columns.append((martingale - values()[used] + before).T)
             martingales.append(martingale.T)
