@@ -246,8 +246,9 @@ def _attempts(scene, thresholds, horizons, p, given):
         counted = [("monte_carlo", {})]
         if "tol" not in given or of_counting or scene.primitive_variable is not None:
             return counted
-        quicker = leading_is_quicker(scene, thresholds, horizons, p, given["tol"])
-        return [("importance_sampling", {})] if quicker else counted
+        if not leading_is_quicker(scene, thresholds, horizons, p, given["tol"]):
+            return counted
+        return [("importance_sampling", {}), ("monte_carlo", {"most": choice.sampled_steps})]
     tol = given.get("tol", default)
     attempts = [("deterministic", {})]
     # who gives a tolerance and limits the effort counts paths of a tolerance of its own

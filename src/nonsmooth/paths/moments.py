@@ -21,9 +21,9 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
     -------
     dict
         Arrays over time: `mean`, `mean_error`, `variance`, `variance_error` (standard errors). At
-        early times it may be that D = 0 on all paths, so that the sample shows no spread. The
-        errors are then those of a sample in which D differs from 0 on one path. The size of D there
-        is taken from the first output time at which it differs from 0 on some path.
+        early times it may be that D is the same on all paths, to rounding, so that the sample shows
+        no spread. The errors are then those of a sample in which D is another on one path, by as
+        much as its size at the first output time at which there is a spread.
 
     Raises
     ------
@@ -32,8 +32,7 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
     """
     gram = np.asarray(gram)
     paths = gram[:, 0, 0]
-    moved = gram[:, 2, 2] > 0
-    if not moved[-1]:
+    if not gram[-1, 2, 2] > 0:
         raise SceneError(
             "int g is 0 on all paths at all times, so that nothing is known of its spread; choose "
             "a longer time or another observable"
@@ -41,7 +40,10 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
     average = gram[:, 0] / paths[:, None]
     covariance = gram / paths[:, None, None] - average[:, :, None] * average[:, None, :]
     spread, squares = (np.diagonal(part, axis1=1, axis2=2)[:, 1:3] for part in (covariance, gram))
-    if np.any(paths < 2) or np.any(spread < tuning.MONTE_CARLO.resolved * squares / paths[:, None]):
+    rounding = tuning.MONTE_CARLO.resolved * squares / paths[:, None]
+    lost = np.any(spread <= rounding, axis=1)
+    first = int(np.argmin(lost))
+    if np.any(paths < 2) or np.any(lost[first:]):
         raise SceneError(
             "the spread of int g is lost in its mean, or there is one path only; "
             "subtract the mean from g or take more paths"
@@ -62,7 +64,6 @@ def moments(gram: ArrayLike) -> dict[str, np.ndarray]:
         result[f"{name}_error"] = np.sqrt(np.maximum(error, 0.0) / paths)
     # what the control variates take off may be more than there is
     result["variance"] = np.maximum(result["variance"], 0.0)
-    first = int(np.argmax(moved))
     square = gram[first, 2, 2] / gram[first, 1, 1]  # the size of D^2: E D^4 / E D^2
     result["mean_error"][:first] = np.sqrt(square) / paths[:first]
     result["variance_error"][:first] = square / paths[:first]

@@ -73,6 +73,8 @@ def require_possible(
 
 def refined_step(step: float, bias: float, allowed: float, order: float) -> float:
     """Step whose bias is as small as allowed, from a known bias at `step` and the weak order."""
+    if bias <= 0:
+        return step
     return float(step * min(1.0, (allowed / bias) ** (1 / order)))
 
 

@@ -245,7 +245,7 @@ def sampled_gamma2(
     Raises
     ------
     ToleranceError
-        If `tol` is not met, or the slope does not settle.
+        If `tol` is not met, the slope does not settle, or int g is 0 on all paths.
     """
     least = tuning.SAMPLED_GAMMA2.least_tolerance
     if not tol >= least:
@@ -266,9 +266,15 @@ def sampled_gamma2(
         doubled, times, found, (rest, _), _ = _settled(scene, own, doubled, enough)
         halving = Sampling(step, fewer, labelled(own.seed, "halving"), threads=threads)
         bias, spread = gamma2_bias(scene, times, halving)
+        if found.gamma2_error == 0:
+            raise ToleranceError(
+                f"int g is 0 on all of {paths} paths up to t = {times[-1]:g}, so that gamma^2 is "
+                "too small to be sampled; choose method='deterministic' or another observable"
+            )
         deviation = float(np.hypot(found.gamma2_error, spread))
         error = abs(bias) + rest + deviation
-        met = abs(bias) + rest + MONTE_CARLO.sigmas * deviation <= tol * found.gamma2
+        unseen = spread == 0  # no path has moved of the fewer that are to measure the bias
+        met = abs(bias) + rest + MONTE_CARLO.sigmas * deviation <= tol * found.gamma2 and not unseen
         if found.gamma2 < 5 * error and (met or attempt > 0):
             raise ToleranceError(
                 f"gamma^2 = {found.gamma2:.1e} with an error of {error:.1e} may be 0, which it is "
@@ -281,7 +287,7 @@ def sampled_gamma2(
         allowed = max(tol * found.gamma2 - rest, error / 2)
         share = MONTE_CARLO.sigmas * spread / (tuning.SAMPLED_GAMMA2.halving_share * allowed)
         paths = max(paths, paths_for(math.sqrt(paths) * found.gamma2_error, allowed))
-        fewer = max(fewer, math.ceil(fewer * share**2))
+        fewer = max(fewer, paths if unseen else math.ceil(fewer * share**2))
         step = refined_step(step, abs(bias) + spread, MONTE_CARLO.bias_aim * allowed, order)
         told = f"gamma^2 = {found.gamma2:.6g} has an error of {error:.1e}"
         known = found.gamma2, error
@@ -313,7 +319,7 @@ def sampled_mean(
     Raises
     ------
     ToleranceError
-        If `tol` is not met, or the slope of the variance does not settle.
+        If `tol` is not met, the slope of the variance does not settle, or int g is 0 on all paths.
     """
     own, paths, step = labelled(seed, "mean"), MONTE_CARLO.pilot_paths, short_step(scene)
     doubled = 0
@@ -327,6 +333,11 @@ def sampled_mean(
         doubled, times, found, _, (rest, _) = _settled(scene, sampling, doubled, enough)
         halving = replace(sampling.labelled("halving"), paths=halving_paths(paths))
         bias, spread = _bias_of_slope(mean_bias, scene, times, halving)
+        if found.mean == found.mean_error == 0:
+            raise ToleranceError(
+                f"int g is 0 on all of {paths} paths up to t = {times[-1]:g}, so that E g is too "
+                "small to be sampled; choose another observable"
+            )
         deviation = math.hypot(found.mean_error, spread)
         error = abs(bias) + rest + deviation
         if tol is None or abs(bias) + rest + MONTE_CARLO.sigmas * deviation <= tol:

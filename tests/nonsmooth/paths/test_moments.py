@@ -94,3 +94,14 @@ def test_bias_of_a_variance_beside_a_large_mean():
     bias, error = step_bias((vector @ vector.T)[None], 1.0)
     assert abs(bias[0]) < 1e-8  # rounding of squares of 1e6
     assert error[0] < 1e-3
+
+
+def test_paths_that_start_alike_have_an_error_all_the_same():
+    """The friction force is -1 until y = 0, on all paths; the variance may be that of a few."""
+    scene = ns.Scene("friction", "hamiltonian", observable="friction_force", start={"y": -1.0})
+    found = moments(gram(scene, [0.1, 2.0], Sampling(0.05, 1000, 1)))
+    assert found["mean"][0] == pytest.approx(-0.1, rel=1e-5)  # in single precision
+    assert found["variance"][0] < 1e-12
+    # D is -0.1 there, and about -2 or less at the time from which its size is taken
+    assert 0.1**2 < 1000 * found["variance_error"][0] < 2.0**2
+    assert 0.1 < 1000 * found["mean_error"][0] < 2.0

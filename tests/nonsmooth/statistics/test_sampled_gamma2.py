@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
+import nonsmooth.statistics.sampled_gamma2 as sampled
 from nonsmooth.errors import ToleranceError
 from nonsmooth.statistics.sampled_gamma2 import first_times, remaining, sampled_gamma2
 
@@ -108,3 +109,31 @@ def test_times_follow_the_drift_far_out():
     assert slow[0] > 10 * usual[0]
     with pytest.raises(ToleranceError, match="relaxes in a time of"):
         first_times(ns.Scene("friction", n=2, damping=1e6, potential="x**2/2"))
+
+
+def hardly_yielding(sigma):
+    """Make a structure whose noise is weak against its spring."""
+    noise = ns.Hamiltonian("1.7*eta**2/2 + zeta**2/2", "0.7", sigma=sigma)
+    g = "plastic_strain_rate"
+    return ns.Scene("elasto_plastic", noise, 400, 1.3, "2*x**2", observable=g)
+
+
+def test_paths_that_never_move_tell_nothing():
+    """gamma^2 is positive, if small: 0 with an error of 0 would be wrong."""
+    with pytest.raises(ToleranceError, match="int g is 0 on all of 4096 paths"):
+        ns.asymptotic_variance(hardly_yielding(0.3), tol=0.1, method="monte_carlo")
+
+
+def test_a_bias_that_no_path_shows_is_not_taken_for_none(monkeypatch):
+    """Few paths yield: if it is none of those that measure the bias, as many as all are to."""
+    asked, measured = [], sampled.gamma2_bias
+
+    def unseen_at_first(scene, times, sampling):
+        asked.append(sampling.paths)
+        return measured(scene, times, sampling) if len(asked) > 1 else (0.0, 0.0)
+
+    monkeypatch.setattr(sampled, "gamma2_bias", unseen_at_first)
+    value, error = sampled_gamma2(hardly_yielding(1.2), 0.3)
+    assert 0 < error < 0.3 * value
+    assert asked[1] >= asked[0]
+    assert len(asked) > 1

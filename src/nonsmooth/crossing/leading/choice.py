@@ -45,6 +45,6 @@ def leading_is_quicker(
             return False  # paths reach a threshold in the mean
         W = brownian_crossing(upper, horizons[-1], lower)
         counted = max(fewest, *(paths_for(np.sqrt(w * (1 - w)), tol) for w in W))
-        led = [chosen.least_led + paths_for(chosen.spread_led * w, tol) for w in W]
-        return chosen.dearer * sum(led) < counted
+        led = [chosen.fitted_steps + paths_for(chosen.spread_led * w, tol) * steps for w in W]
+        return bool(chosen.dearer * sum(led) < counted * steps)
     return False

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import nonsmooth as ns
+from nonsmooth.crossing import probability
 from nonsmooth.crossing.leading.choice import leading_is_quicker
+from nonsmooth.errors import ToleranceError
 
 SCENE = ns.Scene("friction", noise="hamiltonian")
 TOLERANCES = np.geomspace(1e-1, 1e-9, 9)
@@ -37,3 +39,23 @@ def test_integrals_that_stay_bounded_are_counted():
     """With g = y between obstacles int g does not spread."""
     scene = ns.Scene("obstacle", potential="x**2/2", observable="y")
     assert not leading_is_quicker(scene, np.array([[-1.0, 1.0]]), np.array([1.0]), 1.0, 1e-9)
+
+
+def test_led_paths_win_at_moderate_probabilities():
+    """W is about 0.06 at p = 100, to 1e-3: a million paths are counted, or 10^5 led."""
+    scene = ns.Scene("obstacle", "langevin", potential="x**2/2", observable="x")
+    levels = np.array([[-2.5, 2.5]])
+    assert leading_is_quicker(scene, levels, np.array([2.0]), 100.0, 1e-3)
+
+
+def test_paths_are_counted_where_leading_is_refused(monkeypatch):
+    """The choice is a prediction, and counting meets any tolerance that takes minutes."""
+
+    def refused(scene, thresholds, horizons, p, seed, threads, tol=1e-2):
+        raise ToleranceError("few paths carry the weight")
+
+    monkeypatch.setattr(probability, "leading_is_quicker", lambda *request: True)
+    monkeypatch.setitem(probability.METHODS, "importance_sampling", refused)
+    found = ns.crossing_probability(SCENE, 0.3, [2.0], p=10.0, tol=0.05)
+    assert found.attrs["method"] == "monte_carlo"
+    assert found["probability_error"] < 0.05
