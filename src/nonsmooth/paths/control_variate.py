@@ -23,7 +23,7 @@ from nonsmooth.scenes import symbols
 from nonsmooth.scenes.formulas import vectorised
 from nonsmooth.scenes.scene import Scene
 
-DEGREE = 4  # of the polynomials in place of u' that kernels evaluate; they are off by 2 % at most
+DEGREE = 4  # of the polynomials in place of u' that kernels evaluate; they are off by 1 % or so
 
 
 @dataclass(frozen=True)

@@ -237,7 +237,8 @@ def _add_products(values, total, other, lanes, sums):
 
     The lanes without a path have zeros in them.
     """
-    partial = numba.carray(pointer(np.empty((14, _ABREAST)).ctypes), (14, _ABREAST))
+    memory = np.empty((14, _ABREAST))  # read in the end, so that it is kept until then
+    partial = numba.carray(pointer(memory.ctypes), (14, _ABREAST))
     for j in range(_ABREAST):
         a = b = c = d = aa = ab = ac = ad = bb = bc = bd = cc = cd = dd = 0.0
         for begin in range(0, WIDTH, _ABREAST):
@@ -256,7 +257,7 @@ def _add_products(values, total, other, lanes, sums):
         for k in range(14):
             for j in range(left):
                 partial[k, j] += partial[k, left + j]
-    _add_symmetric(partial, lanes, left, sums)
+    _add_symmetric(memory, lanes, left, sums)
 
 
 @inlined

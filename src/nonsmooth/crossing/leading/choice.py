@@ -11,7 +11,7 @@ import numpy as np
 
 from nonsmooth.crossing import tuning
 from nonsmooth.crossing.brownian import brownian_crossing
-from nonsmooth.errors import SceneError
+from nonsmooth.errors import SceneError, ToleranceError
 from nonsmooth.paths.resolution import coarse_step, paths_for
 from nonsmooth.paths.tilted import poisson
 from nonsmooth.scenes.scene import Scene
@@ -35,9 +35,11 @@ def leading_is_quicker(
     chosen = tuning.METHOD_CHOICE
     steps = p * horizons[-1] / coarse_step(scene)
     fewest = tuning.COUNTING.skew / tol
-    if max(fewest, paths_for(0.5, tol)) * steps < chosen.counted_steps:
+    slow = max(1.0, 1 / scene.damping)  # the fit follows paths for some relaxation times
+    if max(fewest, paths_for(0.5, tol)) * steps < chosen.counted_steps * slow:
         return False  # counting takes no time, whatever the probability is
-    with suppress(SceneError):  # int g does not spread like a Brownian motion
+    # int g does not spread like a Brownian motion, or the fit would take too many steps
+    with suppress(SceneError, ToleranceError):
         guide = poisson.fitted(scene, coarse_step(scene) / 2, 0)
         centres = guide.mean * np.sqrt(p) * horizons[-1] + guide.ahead / np.sqrt(p)
         lower, upper = (thresholds - centres).T / guide.gamma
@@ -45,6 +47,7 @@ def leading_is_quicker(
             return False  # paths reach a threshold in the mean
         W = brownian_crossing(upper, horizons[-1], lower)
         counted = max(fewest, *(paths_for(np.sqrt(w * (1 - w)), tol) for w in W))
-        led = [chosen.fitted_steps + paths_for(chosen.spread_led * w, tol) * steps for w in W]
+        fitted = chosen.fitted_steps * slow
+        led = [fitted + paths_for(chosen.spread_led * w, tol) * steps for w in W]
         return bool(chosen.dearer * sum(led) < counted * steps)
     return False

@@ -47,7 +47,7 @@ class Panel(NamedTuple):
     data : float32 or float64 (ROWS, WIDTH)
     total : float64 (3, WIDTH)
     left : int64 (1,)
-        How many normal numbers in the first two rows of `data` have not been used.
+        How many normal numbers in the first two rows of `data` `time_loop.march` has not used.
     """
 
     words: np.ndarray

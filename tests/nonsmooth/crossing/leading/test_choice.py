@@ -59,3 +59,10 @@ def test_paths_are_counted_where_leading_is_refused(monkeypatch):
     found = ns.crossing_probability(SCENE, 0.3, [2.0], p=10.0, tol=0.05)
     assert found.attrs["method"] == "monte_carlo"
     assert found["probability_error"] < 0.05
+
+
+def test_fits_that_would_take_too_long_are_not_tried():
+    """Paths of a hardly damped structure take long to relax; they are counted."""
+    scene = ns.Scene("friction", "hamiltonian", damping=1e-4)
+    levels = np.array([[-1.5, 1.5]])
+    assert not leading_is_quicker(scene, levels, np.array([2.0]), 10.0, 1e-7)
