@@ -31,8 +31,8 @@ class MethodChoice:
     # tolerance and steps up to which Monte Carlo replaces a solver that fails; chosen: minutes
     sampled_tolerance: float = 1e-4
     sampled_steps: float = 1e11
-    # steps up to which paths are counted without more ado, times 1/C_b if that is above 1; chosen: a
-    # second or two of one core, several times what the fit of a guide takes
+    # steps up to which paths are counted without more ado, times 1/C_b if that is above 1; chosen:
+    # a second or two of one core, several times what the fit of a guide takes
     counted_steps: float = 5e8
     # of paths that are led to a threshold: what a step takes, over what one takes that is counted;
     # the error of a path over the probability; and how many led steps take as long as the fits at
