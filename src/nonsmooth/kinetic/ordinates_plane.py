@@ -54,6 +54,11 @@ class PlaneOrdinates:
         Row vectors that interpolate functions of each parity at the start.
     change : dict, optional
         Derivative of the generator on the same nodes, for each parity, sparse.
+
+    Raises
+    ------
+    ToleranceError
+        If no node moves.
     """
 
     speeds: np.ndarray
@@ -63,6 +68,14 @@ class PlaneOrdinates:
     generator: dict
     start: dict
     change: dict | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a grid on which nothing happens."""
+        if len(self.speeds) == 0:
+            raise ToleranceError(
+                "g is 0 as far as grids reach, where paths hardly ever leave; choose another "
+                "observable, or method='monte_carlo'"
+            )
 
     def changed(self, part: complex) -> "PlaneOrdinates":
         """Add a part of the derivative to the generator."""

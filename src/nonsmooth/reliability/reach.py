@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from nonsmooth.crossing.brownian import brownian_crossing
+from nonsmooth.errors import SceneError
 from nonsmooth.paths.ensembles import over_blocks
 from nonsmooth.paths.kernels.panel import PEAK
 from nonsmooth.paths.kernels.random_numbers import labelled
@@ -86,11 +87,22 @@ def typical_time(
     time : float
     power : float
         Of the time, with which the reach grows.
+
+    Raises
+    ------
+    SceneError
+        If the reach is 0 at the start or later.
     """
     scale, time, points = tuning.SCALE, np.log(start), []
     power = scale.powers[0]
     for _ in range(scale.attempts):
-        gap = np.log(level / max(reach(np.exp(time)), np.finfo(float).tiny))
+        typical = reach(np.exp(time))
+        if typical == 0 and time >= np.log(start):
+            raise SceneError(
+                f"int g stays 0 on most paths up to t = {np.exp(time):g}, so that no time is known "
+                f"by which it reaches {level:g}; choose another observable or more noise"
+            )
+        gap = np.log(level) - np.log(max(typical, np.finfo(float).tiny))
         points.append((gap, time))
         near = abs(gap) < np.log(scale.near)
         # late, int g spreads like the root of the time; early, like a power up to 3/2

@@ -258,7 +258,8 @@ def _on_coarsest(grid, tol, on, allowed):
         if len(found) < 3:
             return math.inf
         before, *later = (value for value, _ in found[-3:])
-        return max(abs(value - before) for value in later) / abs(allowed(before, 1.0))
+        apart = max(abs(value - before) for value in later)
+        return apart and apart / abs(allowed(before, 1.0))
 
     refined = until_agreement(
         _tenths(accuracy),

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from nonsmooth.errors import ToleranceError, quoted
 from nonsmooth.estimate import require
 from nonsmooth.grids import uniform_refinement
 from nonsmooth.grids.generator import evaluate
@@ -37,8 +38,18 @@ def gamma2(scene: Scene, tol: float) -> tuple[float, float]:
     Raises
     ------
     ToleranceError
-        As for `gamma2_by_combination`.
+        As for `gamma2_by_combination`; if g is 0 on all nodes.
     """
+    value, error = _gamma2(scene, tol)
+    if value == error == 0:
+        raise ToleranceError(
+            f"g = {quoted(scene.observable)} is 0 as far as grids reach, where paths hardly ever "
+            "leave, so that gamma^2 is too small to be computed; choose another observable"
+        )
+    return value, error
+
+
+def _gamma2(scene, tol):
     if uniform_refinement.applies(scene):
         found = gamma2_by_uniform_refinement(scene, tol)
         if found.met:

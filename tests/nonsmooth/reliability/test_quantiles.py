@@ -249,3 +249,9 @@ def test_what_takes_many_relaxation_times_is_left_to_the_formula():
         lambda T: float(ns.brownian_crossing(1 / np.sqrt(gamma2), T)) - 0.5, 1e11, 1e13
     )
     assert float(found["time"]) == pytest.approx(limit, rel=1e-5)
+
+
+def test_what_never_moves_is_refused():
+    """No time is known by which int g, which stays 0, reaches a level."""
+    with pytest.raises(SceneError, match="int g stays 0 on most paths"):
+        typical_time(lambda time: 0.0, 5.0, 100.0)

@@ -117,3 +117,18 @@ def test_a_bounded_integral_is_refused():
     """G = y between walls: gamma^2 = 0 cannot have a relative error."""
     with pytest.raises(ToleranceError, match="error of"):
         gamma2_on_grids.gamma2(ns.Scene("obstacle", potential="x**2/2", observable="y"), tol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        lambda scene: ns.asymptotic_variance(scene, 0.1, method="deterministic"),
+        lambda scene: ns.crossing_probability(scene, 1.0, [1.0], 10.0, "deterministic", tol=0.1),
+    ],
+    ids=["gamma2", "crossing"],
+)
+def test_contacts_beyond_the_grid_are_refused(question):
+    """The walls are hit with a probability that rounds to 0, which is not 0 exactly."""
+    scene = ns.Scene("obstacle", ns.White(0.2), potential="4*x**2", observable="contact_force")
+    with pytest.raises(ToleranceError, match="is 0 as far as grids reach"):
+        question(scene)
