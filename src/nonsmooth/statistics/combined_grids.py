@@ -6,6 +6,7 @@ combined would add.
 
 import functools
 import math
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -259,7 +260,7 @@ def _on_coarsest(grid, tol, on, allowed):
             return math.inf
         before, *later = (value for value, _ in found[-3:])
         apart = max(abs(value - before) for value in later)
-        return apart and apart / abs(allowed(before, 1.0))
+        return apart / max(abs(allowed(before, 1.0)), sys.float_info.min)
 
     refined = until_agreement(
         _tenths(accuracy),
