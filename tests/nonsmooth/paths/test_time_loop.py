@@ -70,5 +70,8 @@ def test_sums_of_changes_are_those_of_the_pairs(steps, joined):
         half, whole = (panel.total[TOTAL_DELTA, :LANES] for panel in panels[2:])
         expected, size = products(whole - half, whole**2 - half**2, half)
         assert np.all(np.abs(found - expected) <= ROUNDING * size + ROUNDING)
-    assert np.allclose(*passages, rtol=0, atol=1e-12)
+    if joined:  # one flow rounds in another way than two halves
+        assert np.allclose(*passages, rtol=0, atol=1e-12)
+    else:
+        assert np.array_equal(*passages)
     assert np.any(np.isfinite(passages[0]))
